@@ -1,0 +1,111 @@
+-- Collapse of a tall column of grains
+--
+-- Question. A column of dry grains, held by a wall, is let go. How does its
+-- outline change with time, how far does the front run, and what becomes of the
+-- inner part of the column?
+--
+-- Geometry. Half of a plane column of half-width L0 and height H0 = a L0 stands
+-- on a rough floor; the left side is its plane of symmetry. A light gas fills
+-- the rest of a square box of edge 32 L0, so wide that its sides do not matter.
+--
+--      |<---------------- size ---------------->|
+--      +-----------------open-------------------+
+--      |gas                                     |
+--   s  |                                        | w
+--   y  +---+                                    | a
+--   m  |   |                                    | l
+--   m  | g | H0 = a L0                          | l
+--      +---+--------------floor-----------------+
+--       L0
+--
+-- Units. Lengths in L0, times in sqrt(L0/g), the density of the grains is 1;
+-- so pressures are in rho g L0, velocities in sqrt(g L0), viscosities in
+-- rho sqrt(g L0^3).
+--
+-- Numbers. Aspect ratio a = H0/L0 = 6.26; friction mu(I) = mu_s + delta_mu/
+-- (I0/I + 1), I = d gamma/sqrt(p/rho), with 0.32, 0.28 and 0.4; grain diameter
+-- d/L0 = 0.0462; gas 1000 times lighter than the grains.
+--
+-- Source. P.-Y. Lagree, L. Staron & S. Popinet, The granular column collapse as
+-- a continuum: validity of a two-dimensional Navier-Stokes model with a
+-- mu(I)-rheology, J. Fluid Mech. 686 (2011) 378, section 3.2 and figure 10.
+--
+-- Cost. Level 10 (32 cells to L0, about 9,000 cells): ten seconds on one core.
+-- Level 9: two seconds; level 8: less than one.
+--
+-- Expect. The column falls, spreads and comes to rest in about 2.3 sqrt(H0/g).
+-- The front is then between 8.8 and 10.1 L0 (discrete grains: 9.7, Gerris:
+-- 8.95), the top at about 1.3 L0; the core has become a thin triangle.
+--
+-- Try. a=1.42 d=0.0219 stop=4.77 and a=0.5 d=0.0168 stop=2.83 (figures 9 and 8,
+-- to 4 sqrt(H0/g)); mu_s=0.4: a stiffer heap; delta_mu=0: friction that does
+-- not know the rate; eta_max=100: the heap at rest creeps ten times slower.
+
+local a = param("a", 6.26, "aspect ratio H0/L0 of the column")
+local size = param("size", 32, "edge of the box, in L0")
+local level = param("level", 10, "finest grid: size/2^level")
+local stop = param("stop", 5.8, "time of the end, in sqrt(L0/g)")
+local d = param("d", 0.04623, "grain diameter, in L0")
+local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
+local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
+local I0 = param("I0", 0.4, "inertial number at half that rise")
+local eta_max = param("eta_max", 10, "cap on viscosity, in rho sqrt(g L0^3)")
+local shift = param("shift", 0, "column edges moved by so many cells")
+local tolerance = param("tolerance", 1e-4, "of the linear solvers")
+local times = param("times", {0.66, 0.95, 1.24, 1.52, 2.28},
+                    "times of the outlines, in sqrt(H0/g)")
+param("reference", a == 6.26 and "reference/contact_dynamics_a6.26.csv" or "",
+      "outlines of the grains that `talus plot` lays over ours")
+
+local rho, g = 1, 1                     -- the units
+local rho_gas, eta_gas = 1e-3, 1e-4     -- rho, rho sqrt(g L0^3)
+local eta_min = rho * math.sqrt(g * d^3)
+local h = size / 2^level                -- edge of the finest cells
+local width = 1 + shift * h             -- of the column
+local height = a + shift * h
+
+local profile_times = {}                -- in sqrt(L0/g): sqrt(H0/g) = sqrt(a)
+for i, t in ipairs(times) do profile_times[i] = t * math.sqrt(a) end
+
+return {
+  title = "Collapse of a column of grains, a = " .. a,
+  dimension = 2,
+  domain = { size = size, level = level, level_min = 4 },
+  gravity = { 0, -g },
+
+  grains = {
+    density = rho,
+    rheology = { "mu_i", mu_s = mu_s, delta_mu = delta_mu, I0 = I0, d = d,
+                 eta_min = eta_min, eta_max = eta_max },
+    -- distance to the edges of the column, positive inside
+    shape = function(x, y) return math.min(width - x, height - y) end,
+  },
+  gas = { density = rho_gas, rheology = { "newtonian", eta = eta_gas } },
+
+  -- The white part of the column in figure 10: black are the 4 d next to the
+  -- plane of symmetry, 5 d at the side and 9 d at the top.
+  tracers = {
+    core = function(x, y)
+      return math.min(x - 4 * d, width - 5 * d - x, height - 9 * d - y)
+    end,
+  },
+
+  boundary = {
+    left = "symmetry",
+    right = "no_slip",
+    bottom = "no_slip",
+    -- so that the pressure of the gas vanishes at the floor
+    top = { "outflow", pressure = -rho_gas * g * size },
+  },
+
+  adapt = { { "interface", width = 3 }, { "inside" } },
+  solver = { tolerance = tolerance },
+  output = { stop = stop, profile_times = profile_times, snapshot_every = 0.1 },
+
+  expect = {
+    run = "level=8",
+    front = { 8.8, 10.1 },
+    height = { 1.2, 1.4 },
+    volume = { 6.259, 6.261 },
+  },
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bell-Colella-Glaz unsplit upwind advection of momentum.
+ *
+ * Velocity at faces and half steps, from the upwind cell (Bell, Colella &
+ * Glaz 1989, 10.1016/0021-9991(89)90151-4; Popinet 2003,
+ * 10.1016/S0021-9991(03)00298-5):
+ *   u^{n+1/2} = u + (h/2) (s - u_n dt/h) du/dn - dt/2 sum_t u_t d^up u/dt
+ *               + dt/2 g,
+ * s the sign of the face velocity u_n, t the directions along the face with
+ * upwind differences, g the mean acceleration of the two cells. Then
+ *   u <- u - dt/h sum_d [u_f (u^{n+1/2} - u)]_d,
+ * which is the conservative form as long as u_f is solenoidal, and keeps a
+ * uniform velocity whatever it is.
+ */
+#ifndef TALUS_ADVECTION_H
+#define TALUS_ADVECTION_H
+
+#include "talus/mesh.h"
+
+struct advection_work {
+  double *slope[DIM];      /* [>= nleaves + nghosts] differences along d */
+  double *transverse[DIM]; /* [>= nleaves + nghosts] sum_t u_t d^up u/dt */
+  double *flux[DIM];       /* [nfaces_all] */
+  double *volume;          /* [nfaces_all] */
+};
+
+/* Normal velocity at faces and half steps into u_f [nfaces_all] (0 through
+ * walls, whose patches are closed). u[e], g[e] filled. closed
+ * [MESH_MAX_PATCHES]. Collective. */
+void advection_predict(const struct mesh *mesh, double dt, double *const u[DIM],
+                       double *const g[DIM], const bool *closed,
+                       struct advection_work *work, double *u_f);
+
+/* Add -dt div(u_f u) to `out` [DIM][nleaves] with face values predicted from
+ * u, g (filled); faces of the band are left out (momentum.h). band may be
+ * NULL. Collective. */
+void advection_momentum(const struct mesh *mesh, double dt,
+                        double *const u[DIM], double *const g[DIM],
+                        const double *u_f, const double *band,
+                        struct advection_work *work, double *const out[DIM]);
+
+#endif

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The case file: Lua in, a checked `struct params` out.
+ *
+ * A case is a Lua 5.4 file that returns one table. It runs in a sandbox: math,
+ * string, table, utf8 and the plain functions of the language, no files, no
+ * processes, no other modules, bounded instructions and memory, and the same
+ * pseudo-random numbers each time, so that every rank and every restart sees
+ * the same case. `param(name, default, help)` returns a value that the command
+ * line may override as name=value.
+ *
+ * Every key of the returned table is checked against one table of known keys
+ * (src/case/keys.c), which `talus help case` prints. Whatever is wrong with a
+ * case is a USER_ERROR that names file, line, key, value and what is allowed.
+ *
+ * Nothing here talks to other ranks: every rank loads the same text.
+ */
+#ifndef TALUS_CASE_H
+#define TALUS_CASE_H
+
+#include <stdio.h>
+
+#include "talus/params.h"
+
+struct case_file;
+
+/* Deepest levels a case may ask for; those of the forest, which each program
+ * knows for its own dimension only. */
+enum { CASE_MAX_LEVEL_2D = 24, CASE_MAX_LEVEL_3D = 16 };
+
+/*
+ * The text of a file, owned by the caller (mem_free), or NULL and errno if it
+ * cannot be read. Files of more than 16 MB are refused (EFBIG). Not collective.
+ */
+char *case_read_text(const char *path);
+
+/*
+ * Runs and checks a case. Collective in that all ranks must pass the same; any
+ * fault of the case or of an override is a USER_ERROR.
+ *   path       for messages, and the name of the case is made from it
+ *   text       what the file holds, copied
+ *   overrides  [noverrides] "name=value" from the command line, borrowed until
+ *              the call returns
+ * returns  the case, owned by the caller
+ */
+struct case_file *case_load_text(const char *path, const char *text,
+                                 int noverrides, char *const overrides[]);
+
+/* The same for a file that this rank reads itself. */
+struct case_file *case_load(const char *path, int noverrides,
+                            char *const overrides[]);
+
+/* Frees the case and with it the functions that its params hold. */
+void case_destroy(struct case_file *file);
+
+/* What the case says, owned by the case and valid while it lives. Its functions
+ * of position may be called on any rank; if one fails there the program ends,
+ * as a USER_ERROR when there is one rank, as FATAL when there are more. */
+const struct params *case_params(const struct case_file *file);
+
+/* Something about the case that is no error but worth a word, as one line; NULL
+ * if there is nothing. */
+const char *case_note(const struct case_file *file);
+
+/* Prints every parameter in use, one `key = value  unit  meaning` a line, those
+ * declared by param() first. Defaults are marked. */
+void case_print(const struct case_file *file, FILE *f);
+
+/* Writes the same as csv: a header `key,value,unit,origin`, origin one of
+ * default, case, command line. Fields are quoted where csv needs it. */
+void case_write_parameters(const struct case_file *file, FILE *f);
+
+/* What the case returns as `dimension`, 0 if that cannot be found out. Prints
+ * nothing: who runs the case will find out why. */
+int case_dimension(const char *path, int noverrides, char *const overrides[]);
+
+/* Prints how a case is written and the table of its keys. */
+void case_help(FILE *f);
+
+#endif

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Checkpoint: all that a run needs to go on, in one HDF5 file.
+ *
+ * The forest is stored as the levels of all leaves in curve order, and how many
+ * of them each rank had. Cell fields are stored in the same order. Of a face
+ * field each leaf stores the values on its 2 DIM sides [lower x, upper x, ...];
+ * a face that another mesh asks for is read from the side of the leaf that owns
+ * it, which is that whole face, so nothing is lost on the average sides of
+ * coarse leaves. Doubles are stored as they are: on the same number of ranks a
+ * restarted run repeats the other bit by bit; on another number it goes on
+ * from the same values with its leaves spread evenly.
+ *
+ * The file is written beside the old one and then takes its place, so that a
+ * crash or a full disk leaves the old one whole.
+ *
+ *   /                    attributes version, dimension, trees, size, origin,
+ *                        periodic
+ *   /parameters          a group with one text attribute per parameter
+ *   /state               a group with the scalars of the model as attributes
+ *   /levels /partition   int8 [leaves], int64 [ranks]
+ *   /fields/<name>       double [leaves] or [leaves][2 DIM], attributes unit
+ *                        and title
+ */
+#ifndef TALUS_CHECKPOINT_H
+#define TALUS_CHECKPOINT_H
+
+#include <mpi.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+struct field;
+struct fields;
+struct forest;
+struct forest_layout;
+struct mesh;
+
+/* One number of the model's state: `real` or `integer`, the other NULL. */
+struct checkpoint_scalar {
+  const char *name;
+  double *real;     /* borrowed */
+  int64_t *integer; /* borrowed */
+};
+
+/* Write every field with `restart` set and the scalars. `parameters` is csv
+ * text (output.h). Collective. A failure of the disk ends the program with
+ * the old file in place. */
+void checkpoint_write(const char *path, const struct mesh *mesh,
+                      const struct fields *fields, int n,
+                      const struct checkpoint_scalar *scalars,
+                      const char *parameters);
+
+struct checkpoint;
+
+/* Open a checkpoint of a run in a brick of this layout. Collective; whatever
+ * does not fit is a USER_ERROR. */
+struct checkpoint *checkpoint_open(MPI_Comm comm, const char *path,
+                                   const struct forest_layout *layout);
+/* The stored forest, owned by the caller. Collective. */
+struct forest *checkpoint_forest(struct checkpoint *checkpoint,
+                                 const struct forest_layout *layout);
+/* Leaf and face values of every field with `restart` set, on a mesh of that
+ * forest; ghosts and helpers are left to the caller, face copies are filled.
+ * Collective; a field that is not in the file is a USER_ERROR. */
+void checkpoint_read_fields(struct checkpoint *checkpoint,
+                            const struct mesh *mesh, struct fields *fields);
+/* The scalars. Collective; a missing one is a USER_ERROR. */
+void checkpoint_read_scalars(struct checkpoint *checkpoint, int n,
+                             const struct checkpoint_scalar *scalars);
+void checkpoint_close(struct checkpoint *checkpoint);
+
+#endif

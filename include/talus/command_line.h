@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The command line of talus2d and talus3d. Each command gets the words that
+ * follow it and returns an exit status (error.h). */
+#ifndef TALUS_COMMAND_LINE_H
+#define TALUS_COMMAND_LINE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { COMMAND_LINE_MAX_OVERRIDES = 64 };
+
+/* What stands behind `run` or `check`. Texts are borrowed from argv. */
+struct command_line {
+  const char *case_path; /* NULL: none given */
+  int noverrides;
+  char *overrides[COMMAND_LINE_MAX_OVERRIDES];
+  const char *directory; /* NULL: not given */
+  bool restart, quiet, timing;
+  int64_t max_steps;   /* -1: no bound */
+  double max_walltime; /* s, 0: no bound */
+};
+
+/* Collective; whatever is wrong is a USER_ERROR. `running` allows the options
+ * of `run`. */
+void command_line_read(int argc, char *argv[], bool running,
+                       struct command_line *line);
+
+/* The case file among the words behind `run` or `check`, and the overrides,
+ * as command_line_read would find them; never fails. */
+void command_line_find_case(int argc, char *argv[], struct command_line *line);
+
+/* Directory of the running program, in `directory` [size]; false if unknown. */
+bool command_own_directory(char *directory, int size);
+
+int command_info(int argc, char *argv[]);
+int command_plot(int argc, char *argv[]);
+int command_rheology(int argc, char *argv[]);
+
+#endif

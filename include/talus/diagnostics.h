@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Diagnostics: what series.csv and profile.csv say of the state.
+ *
+ *   volume     sum c V                          all grains, m^DIM
+ *   kinetic    sum 1/2 rho_grains c |u|^2 V     J/m (2D), J (3D)
+ *   potential  -sum rho_grains c V g.x          x: centre of the grains in a
+ *              cell, for cut cells the centroid below their plane
+ *   max_speed  |u| of cells with c > 1/2, m/s
+ *
+ * Sums are compensated [neumaier_1974, doi:10.1002/zamm.19740540106] and added
+ * over ranks in rank order, so that the volume is good to a few 1e-16 and the
+ * same from run to run.
+ */
+#ifndef TALUS_DIAGNOSTICS_H
+#define TALUS_DIAGNOSTICS_H
+
+#include "talus/droplets.h"
+#include "talus/outline.h"
+
+struct simulation;
+
+struct diagnostics {
+  double volume;
+  double kinetic, potential;
+  double max_speed;
+  double front, height;     /* of the outline, m */
+  struct droplets droplets; /* not in the outline */
+  struct outline outline;
+};
+
+/* Measure the state, which is left as it is. Collective; the same on all
+ * ranks. Free with diagnostics_free. */
+void diagnostics_measure(const struct simulation *sim,
+                         struct diagnostics *diagnostics);
+void diagnostics_free(struct diagnostics *diagnostics);
+
+#endif

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fields: named arrays of doubles over the cells or faces of a mesh.
+ *
+ * A registry (struct fields) holds the fields of a model; a field keeps its
+ * address while the mesh changes, its array `v` does not. Cell arrays have
+ * mesh->ncells entries, face arrays mesh->nfaces_all.
+ */
+#ifndef TALUS_FIELD_H
+#define TALUS_FIELD_H
+
+#include <stdbool.h>
+
+#include "talus/mesh.h"
+
+enum field_location { FIELD_CELL, FIELD_FACE };
+
+/* How adaptation carries a field to new leaves:
+ * AVERAGE  children take the parent's value, a parent the mean;
+ * LINEAR   children lie on the parent's unlimited slopes (mean conserved);
+ * VOF      children are cut by the parent's plane (volume conserved);
+ * MOMENTUM a parent takes the mean weighted by density, children of a mixed
+ *          cell the parent's value, elsewhere LINEAR (momentum conserved);
+ * FACE     face velocity, halves of a side take its value, inner faces the
+ *          mean of the two sides;
+ * NONE     recomputed, not carried. */
+enum field_remap {
+  REMAP_NONE,
+  REMAP_AVERAGE,
+  REMAP_LINEAR,
+  REMAP_VOF,
+  REMAP_MOMENTUM,
+  REMAP_FACE
+};
+
+struct field {
+  const char *name; /* static strings */
+  const char *unit;
+  const char *title;
+  enum field_location location;
+  enum field_remap remap;
+  bool output;   /* written to snapshots */
+  bool restart;  /* written to checkpoints */
+  int component; /* axis if part of a vector named `name` without the
+                    suffix "_x", "_y", "_z"; else -1 */
+  double *v;     /* owned */
+  struct bc bc[MESH_MAX_PATCHES];
+};
+
+enum { FIELDS_MAX = 64 };
+struct fields {
+  int n;
+  struct field *field[FIELDS_MAX]; /* owned */
+};
+
+/* Add a field, its array allocated for `mesh` and zero; all boundaries
+ * zero-Neumann. The registry owns it. */
+struct field *fields_add(struct fields *fields, const struct mesh *mesh,
+                         const char *name, const char *unit, const char *title,
+                         enum field_location location, enum field_remap remap);
+struct field *fields_find(const struct fields *fields, const char *name);
+/* Replace every array by a zero one that fits `mesh`. */
+void fields_reset(struct fields *fields, const struct mesh *mesh);
+void fields_destroy(struct fields *fields);
+
+/* mesh_fill for fields with their own boundary conditions. Collective. */
+void field_fill(const struct mesh *mesh, struct field *field);
+void field_fill_many(const struct mesh *mesh, int n,
+                     struct field *const field[]);
+/* mesh_fill_faces for a face field. Collective. */
+void field_fill_faces(const struct mesh *mesh, struct field *field);
+
+#endif

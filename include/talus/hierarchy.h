@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hierarchy: geometric multigrid on the tree, the preconditioner of the
+ * Poisson and the viscous solver.
+ *
+ * Level l holds every node of level l of the tree: leaves of level l and
+ * merged nodes; a leaf coarser than l is not copied. All nodes live in one
+ * array of slots, level after level, within a level the red ones (even sum
+ * of integer coordinates) before the black ones, each in curve order.
+ *
+ * On it lives the two-point operator, a symmetric M-matrix without helper
+ * nodes,
+ *   (A e)_i = m_i e_i - sum_f w_if (e_n(f) - e_i),
+ *   w = alpha area / distance, the distance being h between nodes of one
+ *   size and 1.5 h_fine across a jump of level,
+ * for velocities with the stress of the transposed gradient added (see
+ * viscous.h). The coefficient of a merged node's side is the mean of its
+ * children's sides (parallel conductors), so that coarse operators are the
+ * rediscretised ones.
+ *
+ * One cycle approximates e = A^-1 r (r integrated over cells): on each level
+ * from the finest, red-black Gauss-Seidel from zero, then
+ *   r_parent = sum over children (r - A e),   r_coarse leaf += w e_fine
+ * across jumps (conservative); conjugate gradients on the trees; on the way
+ * up
+ *   e_child += e_P + 1/4 sum_d (e_N(d) - e_P),  N the parent's neighbour on
+ *   the child's side,
+ * and Gauss-Seidel again, neighbours across a jump being valid by then.
+ *
+ * Parallel: the children of a node belong to the rank that holds the curve
+ * position of the node's first corner, whoever has the leaves; levels of few
+ * nodes are gathered on rank 0. Message plans are made once.
+ *
+ * Sources: [brandt_1977] for the composite grid, [wesseling_1988] for
+ * cell-centred transfer; that Gauss-Seidel couples the velocity components
+ * and that GCR works in the norm |D^-1 r| (krylov.h) are what keeps large
+ * contrasts cheap: see the table in viscous.h.
+ */
+#ifndef TALUS_HIERARCHY_H
+#define TALUS_HIERARCHY_H
+
+#include <stdint.h>
+
+#include "talus/mesh.h"
+
+struct hierarchy;
+
+/* Levels above the leaves of `mesh`, which must outlive the hierarchy. Build
+ * it anew when the mesh changes. The caller owns it. Collective. */
+struct hierarchy *hierarchy_new(const struct mesh *mesh);
+void hierarchy_destroy(struct hierarchy *hierarchy);
+
+/* Memory held on this rank, in bytes; not collective. */
+int64_t hierarchy_bytes(const struct hierarchy *hierarchy);
+
+#endif

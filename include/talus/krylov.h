@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Krylov: flexible GCR, truncated, for systems too unsymmetric for CG.
+ *
+ * Solves A x = b from the right, x = sum_k a_k z_k with z_k = M r_k: for each
+ * iteration
+ *   z = M r, q = A z; make q orthogonal to the last KRYLOV_DIRECTIONS
+ *   (z follows); a = <r, q> / <q, q>; x += a z; r -= a q
+ * M may change from one call to the next [eisenstat_1983]. The inner product
+ * is <a, b> = sum_i s_i a_i b_i with weights s given by the caller; s_i =
+ * 1 / A_ii^2 measures a residual by the correction it asks for, without which
+ * coefficients that differ by 1e4 or more stop the convergence. The test is
+ * on max |t_i r_i| with a scale t of its own, and comes before the first
+ * iteration.
+ */
+#ifndef TALUS_KRYLOV_H
+#define TALUS_KRYLOV_H
+
+#include <mpi.h>
+#include <stdint.h>
+
+#include "talus/solve.h"
+
+enum { KRYLOV_DIRECTIONS = 24, KRYLOV_PATIENCE = 12 };
+
+/* What GCR needs to know of a system of `nparts` arrays of `n` numbers each
+ * (parts are the components of a vector; they follow one another, so vectors
+ * are [nparts * n]). */
+struct krylov_system {
+  MPI_Comm comm;
+  int32_t n;
+  int nparts;
+  void *context;
+  /* z = M r, a cheap approximation of A^-1 r. Collective. */
+  void (*precondition)(void *context, const double *r, double *z);
+  /* q = A z. Collective. */
+  void (*apply)(void *context, const double *z, double *q);
+  const double *weight; /* [nparts * n] s, > 0 */
+  const double *scale;  /* [n] t, same for all parts; NULL: 1 */
+};
+
+struct krylov_space; /* directions, kept between solves */
+
+struct krylov_space *krylov_space_new(void);
+void krylov_space_destroy(struct krylov_space *space);
+int64_t krylov_space_bytes(const struct krylov_space *space);
+
+/* Reduce r (in: residual of x, out: of the result) until max |t r| <=
+ * tolerance, adding to x; both [nparts * n]. KRYLOV_PATIENCE iterations that
+ * leave the norm of r almost as it was, or a NaN, end it as SOLVE_STALLED; x
+ * is then the iterate of least norm. Directions are allocated the first time
+ * they are needed. Collective. */
+struct solve_stats krylov_solve(const struct krylov_system *system,
+                                struct krylov_space *space, double tolerance,
+                                int max_iterations, double *r, double *x);
+
+#endif

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Mesh: the forest flattened into plain arrays.
+ *
+ * Index space of a cell array, length ncells:
+ *   [0, nleaves)                 leaves of this rank, in curve order
+ *   [nleaves, begin_average)     ghosts: leaves of other ranks that touch ours
+ *   [begin_average, begin_virtual)  averages of finer leaves
+ *   [begin_virtual, begin_boundary) virtual children of coarser leaves
+ *   [begin_boundary, ncells)     boundary nodes
+ * The last three are helper nodes. Every leaf sees a uniform stencil at its
+ * own level: stencil[i][s], s = (i+1) + 3(j+1) + 9(k+1) for offsets i, j, k
+ * in {-1, 0, 1}, is the index of a node of the same size. A leaf that
+ * touches a finer one sees the average of the finer cells; one that touches
+ * a coarser leaf sees a child of it, interpolated linearly with one-sided
+ * slopes where needed, so that linear fields are exact everywhere.
+ * mesh_fill makes ghosts and helper nodes valid from leaf values.
+ *
+ * Index space of a face array, length nfaces_all:
+ *   [0, nfaces)                  faces computed here, sorted by direction
+ *   [nfaces, begin_face_average) copies of faces that other ranks compute
+ *   [begin_face_average, nfaces_all) averages of the finer faces that make
+ *                                up one side of a coarser leaf
+ * A face belongs to the finer of its two leaves, or to the one on its lower
+ * side. Face values are densities (velocity, flux per area), positive
+ * towards increasing coordinate. cell_face[i][2d + side] is valid for every
+ * leaf after mesh_fill_faces, so a divergence is
+ *   div = sum_d (v[cell_face[i][2d+1]] - v[cell_face[i][2d]]) / h[i]
+ * and what leaves one cell enters another to round-off.
+ */
+#ifndef TALUS_MESH_H
+#define TALUS_MESH_H
+
+#include <mpi.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+struct forest;
+
+enum {
+  NCHILD = 1 << DIM,
+  NFACE = 2 * DIM,
+  NSTENCIL = DIM == 2 ? 9 : 27,
+  STENCIL_CENTRE = DIM == 2 ? 4 : 13,
+  MESH_MAX_PATCHES = 32
+};
+
+/* Step of the stencil index along axis d: 1, 3, 9. */
+static inline int stencil_step(int d) { return d == 0 ? 1 : d == 1 ? 3 : 9; }
+/* Stencil index of the face neighbour on face f = 2d + side. */
+static inline int stencil_face(int f) {
+  return STENCIL_CENTRE + (f & 1 ? 1 : -1) * stencil_step(f >> 1);
+}
+
+/* Value of a field at a boundary, per patch. The ghost value is
+ *   a inner + b, chosen so that at the wall
+ *   DIRICHLET: phi = value; NEUMANN: dphi/dn = value (n outwards);
+ *   ROBIN: phi - value = -length dphi/dn (slip length, >= 0). */
+enum bc_type { BC_NEUMANN, BC_DIRICHLET, BC_ROBIN };
+struct bc {
+  enum bc_type type;
+  double value;
+  double length;
+};
+
+struct mesh_exchange; /* private: message plans */
+
+/* Keys covered by a cell of level l; children follow one another in steps of
+ * mesh_key_span(l + 1), child number = x + 2 y + 4 z. */
+uint64_t mesh_key_span(int level);
+
+struct mesh {
+  uint64_t revision;     /* of the forest it was made from */
+  struct forest *forest; /* borrowed */
+  MPI_Comm comm;
+  int rank, nranks;
+
+  int32_t nleaves, nghosts, ncells;
+  int32_t begin_average, begin_virtual, begin_boundary;
+  double (*x)[DIM]; /* [nleaves + nghosts] centres, m */
+  double *h;        /* [nleaves + nghosts] edge, m */
+  double *volume;   /* [nleaves + nghosts] h^DIM */
+  int8_t *level;    /* [nleaves + nghosts] */
+  uint64_t *key;    /* [nleaves + nghosts] curve position of first corner */
+  int32_t (*stencil)[NSTENCIL]; /* [nleaves] */
+
+  int32_t nfaces, begin_face_average, nfaces_all;
+  int32_t face_begin[DIM + 1]; /* faces of direction d: face_begin[d] .. */
+  int32_t (*face_node)[2];     /* [nfaces] nodes of the face's level on the
+                                  lower and the upper side */
+  int32_t (*face_leaf)[2];     /* [nfaces] leaves (or ghosts) there; on a
+                                  boundary the missing one is -1 */
+  int32_t *face_owner;         /* [nfaces] leaf whose stencil holds both
+                                  face nodes and their neighbours */
+  int8_t *face_patch;          /* [nfaces] -1 inside, else patch */
+  double *face_h;              /* [nfaces] edge of the face, m */
+  int32_t (*cell_face)[NFACE]; /* [nleaves] into a face array */
+  int32_t (*average_face)[NCHILD / 2]; /* [nfaces_all - begin_face_average] */
+
+  /* Helper nodes; how mesh_fill makes them */
+  int32_t (*average_child)[NCHILD]; /* finest first; -1: on another rank */
+  int32_t nvirtual_local; /* groups of NCHILD interpolated here; the groups
+                             after them come from other ranks */
+  int32_t *virtual_leaf;  /* coarse leaf of each group */
+  int32_t (*virtual_slope)[DIM][2]; /* [nvirtual_local] nodes whose difference
+                                       gives the slope along each axis */
+  double (*virtual_weight)[DIM];    /* 1/4 over their distance in h */
+  int32_t *boundary_source;         /* node mirrored */
+  int8_t (*boundary_patch)[DIM];    /* patch crossed along each axis, or -1 */
+  double *boundary_h;               /* edge of the node */
+  struct mesh_exchange *exchange;
+
+  int level_finest;           /* over all ranks */
+  const uint64_t *first_keys; /* [nranks + 1] first key of every rank's share
+                                 of the curve; borrowed from the forest */
+};
+
+/* Flatten the forest. Collective; the forest must outlive the mesh. */
+struct mesh *mesh_new(struct forest *forest);
+void mesh_destroy(struct mesh *mesh);
+
+/* Make ghosts and helper nodes of n cell fields valid. v[k] [ncells];
+ * bc[k] [MESH_MAX_PATCHES] says what holds on each patch; homogeneous: the
+ * values at the boundary are taken as 0 (for corrections). Collective. */
+void mesh_fill(const struct mesh *mesh, int n, double *const v[],
+               const struct bc *const bc[], bool homogeneous);
+/* Only copy leaf values to the ghosts of other ranks. v[k] [>= nleaves +
+ * nghosts]. Collective. */
+void mesh_fill_ghosts(const struct mesh *mesh, int n, double *const v[]);
+/* Copy face values to other ranks and average onto coarse sides. v[k]
+ * [nfaces_all]. Collective. */
+void mesh_fill_faces(const struct mesh *mesh, int n, double *const v[]);
+
+/* Coefficients of a boundary node at distance h/2 from the wall. */
+static inline void bc_ghost(const struct bc *bc, double h, double *a,
+                            double *b) {
+  if (bc->type == BC_NEUMANN) {
+    *a = 1, *b = bc->value * h;
+  } else { /* Robin with length 0 is Dirichlet */
+    double l = bc->type == BC_ROBIN ? bc->length : 0;
+    *a = (2 * l - h) / (2 * l + h), *b = 2 * h * bc->value / (2 * l + h);
+  }
+}
+
+/* Sum, maximum over ranks. Collective. */
+double mesh_sum(const struct mesh *mesh, double local);
+double mesh_max(const struct mesh *mesh, double local);
+
+#endif

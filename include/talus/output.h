@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Output: the directory of a run, and what all its files have in common. */
+#ifndef TALUS_OUTPUT_H
+#define TALUS_OUTPUT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+struct hdf5_file;
+
+/* USER_ERROR unless `directory` can be written to, or can be made. Leaves no
+ * trace. Collective. */
+void output_check_directory(const char *directory);
+/* Make the directory, and those above it, if missing. Collective; USER_ERROR
+ * if that fails. */
+void output_make_directory(const char *directory);
+/* `directory`/`name`; the caller frees it with mem_free. Not collective. */
+char *output_path(const char *directory, const char *name);
+/* Remove what an earlier run left and a new one would not write over at once:
+ * the snapshots from number `first` on; all of them, checkpoint, log and index
+ * of snapshots. Collective. */
+void output_remove_snapshots(const char *directory, int first);
+void output_remove_run(const char *directory);
+
+/* What `write` prints (on rank 0; NULL: nothing) as a text on every rank, to
+ * be freed with mem_free. Collective. */
+char *output_parameters(void (*write)(void *context, FILE *f), void *context);
+/* Write a text to directory/name. Collective. */
+void output_write_text(const char *directory, const char *name,
+                       const char *text);
+
+/* Heading of an HDF5 file: attribute `version`, and a group `parameters` with
+ * one text attribute per line `name,value,...` of the csv text but the first,
+ * which is its header. Collective. */
+void output_write_heading(struct hdf5_file *file, const char *parameters);
+
+/* Shortest decimal number that reads back as the same double, in `text`
+ * [32], which is returned. */
+char *output_number(double value, char text[32]);
+
+/* Ends the program unless everything written to `f` has reached the
+ * operating system. Not collective. */
+void output_flush(FILE *f, const char *path);
+
+#endif

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Plain description of a run: what a case file says, after checking.
+ *
+ * `case` fills it, `flow` and `io` read it; nobody changes it during a run.
+ * Units are those of the case (any consistent set). Vectors have room for
+ * three components; in 2D the third is unused. Strings and functions are
+ * owned by whoever made the struct (the case) and outlive the run.
+ */
+#ifndef TALUS_PARAMS_H
+#define TALUS_PARAMS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "talus/rheology.h"
+
+enum {
+  PARAMS_MAX_BOUNDARIES = 16, /* 6 sides, then patches named by the case */
+  PARAMS_MAX_TRACERS = 8,
+  PARAMS_MAX_TIMES = 256,
+  PARAMS_MAX_CRITERIA = 8,
+  PARAMS_NAME_LENGTH = 64
+};
+
+/* A scalar function of position, eval == NULL when absent. */
+struct function {
+  double (*eval)(void *context, const double x[3]);
+  void *context;
+};
+
+enum boundary_type {
+  BOUNDARY_NO_SLIP, /* u = velocity (a moving wall moves tangentially) */
+  BOUNDARY_SLIP,    /* u.n = 0, no tangential stress; also "symmetry" */
+  BOUNDARY_NAVIER,  /* u.n = 0, u_t = slip_length du_t/dn */
+  BOUNDARY_OUTFLOW, /* p = pressure, du/dn = 0 */
+  BOUNDARY_INFLOW,  /* u = velocity, c = fraction */
+  BOUNDARY_PERIODIC
+};
+
+struct boundary {
+  enum boundary_type type;
+  double velocity[3];
+  double pressure;
+  double slip_length;
+  double fraction; /* volume fraction of grains carried in by an inflow */
+};
+
+struct phase {
+  double density; /* kg/m^3, > 0 */
+  struct rheology rheology;
+};
+
+struct tracer {
+  char name[PARAMS_NAME_LENGTH];
+  struct function shape; /* positive inside, at t = 0 */
+};
+
+/* One adaptation criterion; a leaf takes the finest level asked for. */
+enum criterion_type {
+  CRITERION_INTERFACE, /* within `width` cells of the surface of the grains */
+  CRITERION_INSIDE,    /* inside the grains */
+  CRITERION_ESTIMATE,  /* wavelet estimate of velocity above `threshold` */
+  CRITERION_FUNCTION   /* level returned by a function of position */
+};
+
+struct criterion {
+  enum criterion_type type;
+  int level;        /* finest level asked for */
+  double width;     /* INTERFACE: half-width of the band, in finest cells */
+  double threshold; /* ESTIMATE: in units of velocity */
+  struct function function; /* FUNCTION: level as a real number */
+};
+
+struct params {
+  char name[PARAMS_NAME_LENGTH]; /* case name, gives the output directory */
+  char title[256];
+  int dimension; /* 2 or 3 */
+
+  /* Domain: a brick of trees, each a square or cube of edge `size`. */
+  double size;
+  double origin[3];
+  int trees[3];
+  int level_min, level_max; /* of refinement within a tree */
+  struct boundary boundary[PARAMS_MAX_BOUNDARIES]; /* side 2d: lower side of
+                               axis d, 2d+1: upper; then patches from 6 on */
+  int nboundaries;                                 /* at least 6 */
+  /* Which boundary holds at a boundary face: returns an index into boundary
+   * (>= 6 for a patch, or `side`); NULL: every face takes its side's. */
+  int (*boundary_select)(void *context, int side, const double x[3]);
+  void *boundary_context;
+
+  /* Physics */
+  double gravity[3];
+  struct phase grains, gas;
+  bool single_phase;           /* grains fill the box; no VOF, no gas */
+  struct function shape;       /* level set of the grains, positive inside */
+  struct function velocity[3]; /* initial velocity, absent: rest */
+  struct tracer tracer[PARAMS_MAX_TRACERS]; /* passive VOF tracers */
+  int ntracers;
+  bool pressure_level_given; /* needed when no boundary sets the pressure */
+  double pressure_level;     /* mean pressure over the box */
+
+  /* Numerics */
+  double cfl;                /* 1/2 sum |u_f| A dt / V, in (0, 1/2] */
+  double dt_max;             /* user cap, > 0 */
+  double tolerance_pressure; /* max |div u| dt */
+  double tolerance_viscous;  /* max |dt r / rho| / velocity scale */
+  int max_iterations;        /* of one linear solve */
+  int picard;                /* repetitions of viscosity and projection */
+  double theta;              /* 1: backward Euler, 1/2: Crank-Nicolson */
+  struct criterion criterion[PARAMS_MAX_CRITERIA];
+  int ncriteria;   /* 0: uniform at level_max */
+  int adapt_every; /* at most this many steps; 0: when needed */
+  int64_t max_cells;
+
+  /* Output */
+  double stop;         /* end time */
+  double length_scale; /* for reading only: L0, or 1 */
+  double profile_times[PARAMS_MAX_TIMES];
+  int nprofile_times;
+  double snapshot_every;   /* interval of time; 0: only first and last */
+  int series_every;        /* steps between rows of series.csv */
+  double checkpoint_every; /* wall-clock seconds; 0: only at the end */
+};
+
+#endif

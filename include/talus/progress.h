@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Progress of a run on standard output: on a terminal one line that is written
+ * over again, elsewhere, and under mpirun, a plain line every few seconds. Rank
+ * 0 speaks. */
+#ifndef TALUS_PROGRESS_H
+#define TALUS_PROGRESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct progress;
+
+/* A run from time `start` to time `stop`. Not collective. */
+struct progress *progress_new(double start, double stop, bool quiet);
+/* Tell of a finished step; shown a few times a second at most. */
+void progress_step(struct progress *progress, int64_t step, double time,
+                   double dt, int64_t cells);
+/* A line of its own, unless quiet; the line of progress stays above. */
+void progress_say(struct progress *progress, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+void progress_destroy(struct progress *progress);
+
+/* Time left as people say it, "1 h 05 min", in `text` [32], returned. */
+char *progress_duration(double seconds, char text[32]);
+
+#endif

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What of a run goes into a checkpoint: the simulation, and how far the
+ * output has come. */
+#ifndef TALUS_RUN_STATE_H
+#define TALUS_RUN_STATE_H
+
+#include <stdint.h>
+
+struct params;
+struct simulation;
+
+struct run_state {
+  double wall_seconds; /* since the first step, over all invocations */
+  int64_t snapshots;   /* written so far */
+};
+
+/* Write the checkpoint (checkpoint.h). Collective. */
+void run_state_write(const char *path, struct simulation *sim,
+                     struct run_state *state, const char *parameters);
+/* The simulation it holds, with all fields filled; *state is set. Collective;
+ * a file that does not fit the case is a USER_ERROR. */
+struct simulation *run_state_read(const char *path, const struct params *params,
+                                  struct run_state *state);
+
+#endif

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* series.csv: one row of numbers per logged step. */
+#ifndef TALUS_SERIES_H
+#define TALUS_SERIES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A row, in the order and under the names of the columns. */
+struct series_row {
+  int64_t step;
+  double time, dt;      /* s */
+  int64_t cells;        /* leaves over all ranks */
+  double front, height; /* m, of the heap (diagnostics.h) */
+  double volume;        /* of the grains, droplets and all, m^DIM */
+  double kinetic, potential, dissipated;           /* J/m (2D), J (3D) */
+  double max_speed;                                /* of the grains, m/s */
+  int64_t pressure_iterations, viscous_iterations; /* of this step */
+  double wall_seconds;                             /* since the first step */
+  int64_t droplets;      /* sets of grains apart from the heap */
+  double droplet_volume; /* m^DIM */
+  double numerical; /* energy lost to the scheme: initial - kinetic - potential
+                       - dissipated */
+  double divergence_volume; /* sum over steps of sum c div u dt V, m^DIM */
+  double pressure_residual, viscous_residual; /* in units of the tolerance */
+};
+
+struct series;
+
+/* Open directory/series.csv; with `keep` rows up to `last_step` stay.
+ * Collective. */
+struct series *series_open(const char *directory, bool keep, int64_t last_step);
+/* Add a row; the values of rank 0 count. */
+void series_write(struct series *series, const struct series_row *row);
+void series_close(struct series *series);
+
+#endif

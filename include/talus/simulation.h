@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Simulation: the state of the two-phase incompressible model.
+ *
+ * Staggered in time: after step n, velocity u^n at cell centres and u_f^n
+ * on faces at `time`; volume fraction c and pressure p at time - dt/2.
+ */
+#ifndef TALUS_SIMULATION_H
+#define TALUS_SIMULATION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "talus/field.h"
+#include "talus/params.h"
+#include "talus/solve.h"
+
+struct clean;
+struct forest;
+struct hierarchy;
+
+/* Energies of the grains, per unit width in 2D, in J/m (J in 3D). */
+struct energy {
+  double kinetic, potential;
+  double dissipated; /* viscous work since t = 0 */
+  double initial;    /* kinetic + potential at t = 0 */
+};
+
+struct simulation {
+  const struct params *params; /* borrowed */
+  struct forest *forest;       /* owned, as all below */
+  struct mesh *mesh;
+  struct hierarchy *hierarchy;
+  struct clean *clean;
+  struct fields fields;
+
+  /* State, kept over adaptation and restart */
+  struct field *c; /* volume fraction of grains */
+  struct field *tracer[PARAMS_MAX_TRACERS];
+  struct field *u[DIM]; /* velocity, m/s */
+  struct field *u_f;    /* face velocity, m/s */
+  struct field *p;      /* pressure, Pa */
+  struct field *g[DIM]; /* gravity minus pressure gradient over density */
+
+  /* Properties and scratch, remade every step */
+  struct field *rho;                 /* leaves */
+  struct field *eta;                 /* leaves, mean of the faces, for output */
+  struct field *eta_f, *alpha_f;     /* face viscosity, 1/density */
+  struct field *gravity_f;           /* face gravity, balanced (properties.h) */
+  struct field *normal[DIM], *plane; /* planes of cut leaves */
+  struct field *frozen;              /* cc of vof.h, or scratch */
+  struct field *band;                /* leaves whose momentum rides with c */
+  struct field *c_old;
+  struct field *u_old[DIM];    /* u^n while u is being advanced */
+  struct field *u_half;        /* u_f^{n+1/2} */
+  struct field *cell[2 * DIM]; /* scratch */
+  struct field *face[DIM + 2]; /* scratch */
+
+  bool closed[MESH_MAX_PATCHES]; /* patches whose normal velocity is given */
+  bool open[MESH_MAX_PATCHES];   /* the others */
+
+  double time, dt;
+  int64_t step;
+  double travel; /* cells the surface may have moved since adaptation */
+  struct solve_stats pressure, predictor, viscous; /* of the last step */
+  struct energy energy;
+  double max_speed;         /* of the grains, m/s */
+  double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
+  double mesh_seconds;      /* wall time spent on adaptation */
+};
+
+/* Initial state of the case: grid adapted to it, fields set, static
+ * pressure. Collective. Owned by the caller. */
+struct simulation *simulation_new(const struct params *params);
+/* The same fields on a given forest (which it takes over), all zero, for a
+ * restart: io then fills `fields`, and the caller sets time, dt, step,
+ * travel, energy. */
+struct simulation *simulation_new_on(const struct params *params,
+                                     struct forest *forest);
+void simulation_destroy(struct simulation *sim);
+/* Forest layout of the case, and the patch of a boundary face (`context` is
+ * the params). */
+struct forest_layout;
+void simulation_layout(const struct params *params,
+                       struct forest_layout *layout);
+/* Make mesh, hierarchy and cleaning tree anew from the forest; the fields
+ * are reset to zero. Collective. */
+void simulation_remesh(struct simulation *sim);
+
+#endif

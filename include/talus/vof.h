@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* VOF: geometric transport of a volume fraction.
+ *
+ *   dc/dt + div(c u) = 0                       [lagree_staron_popinet_2011,
+ *                                               eq. 2.6]
+ * One sweep along axis d (Weymouth & Yue 2010, 10.1016/j.jcp.2009.12.018):
+ *   c <- c - dt/h [F]_d + cc dt/h [u_f]_d,   [v]_d = v(upper) - v(lower),
+ * F the part of the volume u_f dt that the plane n.x <= alpha of the upwind
+ * leaf fills, cc = 1 where c > 1/2 before the first sweep, else 0. After all
+ * axes the cc terms add up to cc dt div(u), zero to round-off when u_f has
+ * been cleaned (clean.h): volume is kept without clipping. c stays in [0, 1]
+ * for 1/2 sum |u_f| A dt / V <= 1/2.
+ *
+ * c lives in cells; normals and alpha in leaves and ghosts, in units of the
+ * leaf (plane.h); F on faces, m/s.
+ */
+#ifndef TALUS_VOF_H
+#define TALUS_VOF_H
+
+#include <stdbool.h>
+
+#include "talus/mesh.h"
+
+/* A leaf is cut by the interface when c lies strictly between these. */
+#define VOF_EMPTY 1e-12
+static inline bool vof_is_cut(double c) {
+  return c > VOF_EMPTY && c < 1 - VOF_EMPTY;
+}
+
+/* Planes of all cut leaves, and of ghosts: normal[DIM] and alpha, each
+ * [>= nleaves + nghosts]. c must be filled. Collective. */
+void vof_reconstruct(const struct mesh *mesh, const double *c,
+                     double *const normal[DIM], double *alpha);
+
+/* Plane of one leaf from its filled stencil. */
+void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
+               double n[DIM], double *alpha);
+
+/* Fluxes F of c through the faces of axis d; flux [nfaces_all] is valid on
+ * all of them afterwards. u_f [nfaces_all], m/s; c filled. Collective. */
+void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
+              const double *c, double *const normal[DIM], const double *alpha,
+              double *flux);
+
+/* cc [nleaves] = 1 where c > 1/2. */
+void vof_freeze(const struct mesh *mesh, const double *c, double *cc);
+
+/* The update of the sweep along d. c [nleaves] in/out. */
+void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
+                const double *flux, const double *cc, double *c);
+
+#endif

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From the table that a case returns to params: one pass over the keys, then
+ * what single keys cannot tell. */
+#include <math.h>
+#include <string.h>
+
+#include "case_file.h"
+
+_Static_assert(sizeof((struct params *)0)->title == VALUE_LENGTH,
+               "read.c copies texts of this length");
+
+/* Push the value at `path`, nil if it or a table above it is not there. Of
+ * tables that are something else, what holds the section complains. */
+static void push_path(struct case_file *file, const char *path) {
+  lua_State *L = file->L;
+  lua_pushvalue(L, 1);
+  while (*path != '\0') {
+    size_t n = strcspn(path, ".");
+    if (!lua_istable(L, -1)) {
+      lua_pop(L, 1);
+      lua_pushnil(L);
+      return;
+    }
+    lua_pushlstring(L, path, n);
+    lua_rawget(L, -2);
+    lua_remove(L, -2);
+    path += n + (path[n] == '.');
+  }
+}
+
+/* The keys right inside `section` ("" for the case itself) are all that the
+ * table on top may hold. */
+static void check_section(struct case_file *file, const char *section) {
+  const char *names[CASE_MAX_NAMES];
+  const struct key *key;
+  size_t length = strlen(section);
+  int n = 0;
+  for (int i = 0; (key = keys_get(i)) != NULL; i++) {
+    const char *inner = key->path;
+    if (length > 0) {
+      if (strncmp(inner, section, length) != 0 || inner[length] != '.')
+        continue;
+      inner += length + 1;
+    }
+    if (strchr(inner, '.') == NULL && n < CASE_MAX_NAMES) names[n++] = inner;
+  }
+  read_known_only(file, section, n, names, 0);
+}
+
+static void read_section(struct case_file *file, const struct key *key) {
+  lua_State *L = file->L;
+  bool given = !lua_isnil(L, -1);
+  if (!given && key->fallback == NULL)
+    read_fail_at(file, key->path, "%s is missing: %s = { ... } (%s)", key->path,
+                 key->path, key->help);
+  if (given && !lua_istable(L, -1))
+    read_fail(file, key->path, "a table is needed (%s)", key->help);
+  if (given) check_section(file, key->path);
+  lua_pop(L, 1);
+}
+
+/* The value of `key` is on top. */
+static void read_key(struct case_file *file, const struct key *key) {
+  switch (key->type) {
+    case KEY_TIMES:
+      output_read_times(file, key);
+      break;
+    case KEY_SHAPE:
+      initial_read_shape(file, key);
+      break;
+    case KEY_VELOCITY:
+      initial_read_velocity(file, key);
+      break;
+    case KEY_CLOSURE:
+      closure_read(file, key);
+      break;
+    case KEY_SIDE:
+      boundary_read_side(file, key);
+      break;
+    case KEY_PATCHES:
+      boundary_read_patches(file);
+      break;
+    case KEY_TRACERS:
+      initial_read_tracers(file, key);
+      break;
+    case KEY_CRITERIA:
+      criteria_read(file, key);
+      break;
+    case KEY_EXPECT:
+      output_read_expect(file, key);
+      break;
+    default:
+      read_value(file, key, key->path, &file->params);
+  }
+}
+
+/* A key inside an optional section that is not there is not missing. */
+static bool is_absent(struct case_file *file, const struct key *key) {
+  char section[PATH_LENGTH];
+  const char *dot = strrchr(key->path, '.');
+  if (dot == NULL || key->fallback != NULL) return false;
+  snprintf(section, sizeof section, "%.*s", (int)(dot - key->path), key->path);
+  push_path(file, section);
+  bool absent = lua_isnil(file->L, -1);
+  lua_pop(file->L, 1);
+  return absent;
+}
+
+static void check_phases(struct case_file *file) {
+  struct params *params = &file->params;
+  bool shape = params->shape.eval != NULL;
+  bool gas = params->gas.rheology.model != NULL;
+  params->single_phase = !shape && !gas;
+  if (gas && !shape)
+    read_fail_at(file, "grains",
+                 "grains.shape is missing: there is gas, so say where the "
+                 "grains are at t = 0 by a function of position, or take "
+                 "`gas` away to fill the box with grains");
+  if (shape && !gas)
+    read_fail_at(file, "grains.shape",
+                 "gas is missing: grains.shape leaves a part of the box to "
+                 "it, so give its density and rheology");
+}
+
+static void check_grid(struct case_file *file) {
+  const struct params *params = &file->params;
+  if (params->level_min > params->level_max)
+    read_fail_at(file, "domain.level_min",
+                 "domain.level_min = %d is above domain.level = %d",
+                 params->level_min, params->level_max);
+  double ncells = ldexp(1, params->dimension * params->level_max);
+  for (int d = 0; d < params->dimension; d++) ncells *= params->trees[d];
+  if (params->ncriteria == 0 && ncells > (double)params->max_cells)
+    read_fail_at(file, "domain.level",
+                 "a uniform grid of level %d has %.3g cells, and "
+                 "adapt.max_cells is %.3g: lower domain.level, or say in "
+                 "`adapt` where it is to be fine",
+                 params->level_max, ncells, (double)params->max_cells);
+}
+
+static void set_defaults(struct case_file *file) {
+  struct params *params = &file->params;
+  params->nboundaries = 6;
+  for (int side = 0; side < 6; side++)
+    params->boundary[side].type = BOUNDARY_SLIP;
+  for (int d = 0; d < 3; d++) params->trees[d] = 1;
+  snprintf(params->title, sizeof params->title, "%s", params->name);
+}
+
+void build_params(struct case_file *file) {
+  lua_State *L = file->L;
+  const struct key *key;
+  set_defaults(file);
+  lua_pushvalue(L, 1);
+  check_section(file, "");
+  lua_pop(L, 1);
+  for (int i = 0; (key = keys_get(i)) != NULL; i++) {
+    if (is_absent(file, key)) continue;
+    push_path(file, key->path);
+    if (key->type == KEY_SECTION)
+      read_section(file, key);
+    else
+      read_key(file, key);
+  }
+  push_path(file, "boundary.pressure_level");
+  file->params.pressure_level_given = !lua_isnil(L, -1);
+  lua_pop(L, 1);
+  check_phases(file);
+  check_grid(file);
+  boundary_check(file);
+}

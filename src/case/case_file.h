@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Private to src/case: the case while it is read, and the calls its parts make
+ * on each other.
+ *
+ * Convention: functions that read a value find it on top of the Lua stack and
+ * take it off. `path` is the name of that value for people, "domain.size".
+ * Anything wrong ends in USER_ERROR.
+ */
+#ifndef TALUS_CASE_CASE_FILE_H
+#define TALUS_CASE_CASE_FILE_H
+
+#include <lua.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "keys.h"
+#include "sandbox.h"
+#include "talus/case.h"
+
+enum {
+  PATH_LENGTH = 128,
+  VALUE_LENGTH = 256,
+  CASE_MAX_PARAMETERS = 64,
+  CASE_MAX_FUNCTIONS = 32,
+  CASE_MAX_PATCHES = PARAMS_MAX_BOUNDARIES - 6,
+  CASE_MAX_NAMES = 64 /* words known in one place */
+};
+
+/* One line of what is in use. Texts are owned. */
+struct row {
+  char *key, *value, *unit, *help;
+  const char *origin; /* static */
+};
+
+/* A parameter declared by the case. */
+struct declaration {
+  char name[PARAMS_NAME_LENGTH];
+};
+
+/* A function of the case. */
+struct case_function {
+  struct case_file *file; /* borrowed */
+  char path[PATH_LENGTH]; /* the key that holds it */
+  int reference;          /* in Lua's registry */
+  int nresults, result;   /* it returns so many numbers, this one is meant */
+  char name[PARAMS_NAME_LENGTH]; /* what it returned last, if a name */
+};
+
+struct case_file {
+  char *path, *text;       /* owned */
+  struct sandbox *sandbox; /* owned */
+  lua_State *L;            /* of the sandbox; what the case returned is at 1 */
+
+  int noverrides;
+  char *const *overrides; /* borrowed while loading */
+  int ndeclared;
+  struct declaration declared[CASE_MAX_PARAMETERS];
+
+  int nrows;
+  struct row *rows;
+
+  struct params params;
+  struct case_function functions[CASE_MAX_FUNCTIONS];
+  int nfunctions;
+  struct case_function *side_function[6]; /* NULL: one boundary all over */
+  char patch[CASE_MAX_PATCHES][PARAMS_NAME_LENGTH];
+  int npatches;
+  double velocity[3];      /* of a uniform initial state */
+  bool loading;            /* all ranks do the same */
+  char note[VALUE_LENGTH]; /* "": none */
+};
+
+/* param.c */
+
+/* Make param() known to the sandbox. Errors are Lua errors. */
+void param_install(struct case_file *file);
+/* Every override must have been declared. */
+void param_check_overrides(struct case_file *file);
+
+/* rows.c */
+char *text_copy(const char *text);
+/* Letters, digits and _, not a digit first, not too long. */
+bool is_name(const char *text);
+/* "section.name" in `path`, cut if too long; `name` alone if section is "". */
+void path_join(char path[PATH_LENGTH], const char *section, const char *name);
+/* `value` as the case would write it, shortest that reads back the same. */
+void text_number(double value, size_t size, char *text);
+/* Append a row; texts are copied. Names are unique: a parameter named like a
+ * key of the case gives way and becomes "param.name". */
+void rows_add(struct case_file *file, const char *key, const char *value,
+              const char *unit, const char *help, const char *origin);
+void rows_destroy(struct case_file *file);
+
+/* read.c */
+
+/* Ends the program: "file:line: path = value: message", the value taken from
+ * the top of the stack. */
+_Noreturn void read_fail(struct case_file *file, const char *path,
+                         const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* The same without a value. */
+_Noreturn void read_fail_at(struct case_file *file, const char *path,
+                            const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* The table on top may have these keys and `npositions` elements. It stays. */
+void read_known_only(struct case_file *file, const char *path, int n,
+                     const char *const *names, int npositions);
+/* The names of the table on top in alphabetical order, as Lua's own differs
+ * between ranks; they live as long as the table. Returns how many. */
+int read_names(struct case_file *file, const char *path, int max,
+               const char **names);
+/* Store a value as the key says, or its default, in `base` + offset, and add a
+ * row. Only plain types, up to KEY_TEXT. Returns whether it was given. */
+bool read_value(struct case_file *file, const struct key *key, const char *path,
+                void *base);
+/* A finite number within the key's range. */
+double read_number(struct case_file *file, const struct key *key,
+                   const char *path);
+/* "; did you mean `x`?" if a word looks like it, then all words. */
+void read_suggest(const char *word, int n, const char *const *names,
+                  size_t size, char *text);
+
+/* function.c */
+
+/* Keep the function on top for later. Adds a row. */
+struct case_function *function_keep(struct case_file *file, const char *path,
+                                    const char *unit, const char *help,
+                                    int nresults);
+/* One of its results as the struct that `params` holds. */
+struct function function_result(struct case_file *file,
+                                struct case_function *function, int result);
+/* The name it returns at x, valid until the next call. */
+const char *function_name(struct case_function *function, const double x[3]);
+/* Ends the program, by FATAL when only this rank may know. */
+_Noreturn void function_fail(struct case_function *function, const double x[3],
+                             const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Call every function at points all over the box, so that most of what can go
+ * wrong does so before anything is written. */
+void function_try_all(struct case_file *file);
+
+/* build.c: everything the returned table says. */
+void build_params(struct case_file *file);
+
+/* The types of key that have an inner life. */
+
+/* closure.c */
+void closure_read(struct case_file *file, const struct key *key);
+bool closure_depends_on_pressure(const struct rheology *rheology);
+
+/* boundary.c */
+void boundary_read_side(struct case_file *file, const struct key *key);
+void boundary_read_patches(struct case_file *file);
+void boundary_check(struct case_file *file);
+
+/* criteria.c */
+void criteria_read(struct case_file *file, const struct key *key);
+
+/* initial.c */
+void initial_read_shape(struct case_file *file, const struct key *key);
+void initial_read_velocity(struct case_file *file, const struct key *key);
+void initial_read_tracers(struct case_file *file, const struct key *key);
+
+/* output_keys.c */
+void output_read_times(struct case_file *file, const struct key *key);
+void output_read_expect(struct case_file *file, const struct key *key);
+
+#endif

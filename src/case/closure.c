@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Closures: {"mu_i", mu_s = 0.32, ...}, checked against the keys of the model.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "case_file.h"
+#include "talus/rheology.h"
+
+enum { REGULARISATIONS = 3 };
+
+static const struct rheology_model *read_model(struct case_file *file,
+                                               const struct key *key) {
+  lua_State *L = file->L;
+  if (lua_istable(L, -1))
+    lua_rawgeti(L, -1, 1);
+  else
+    lua_pushvalue(L, -1);
+  const char *names[CASE_MAX_NAMES];
+  int n = 0;
+  for (; n < CASE_MAX_NAMES && rheology_get(n) != NULL; n++)
+    names[n] = rheology_get(n)->name;
+  char known[1024];
+  read_suggest(lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "", n,
+               names, sizeof known, known);
+  if (lua_type(L, -1) != LUA_TSTRING)
+    read_fail(file, key->path,
+              "the first element must name a closure, as in {\"mu_i\", d = "
+              "0.01}%s",
+              known);
+  const struct rheology_model *model = rheology_find(lua_tostring(L, -1));
+  if (model == NULL) read_fail(file, key->path, "no such closure%s", known);
+  lua_pop(L, 1);
+  return model;
+}
+
+/* The keys of a model and `regularisation` are all its table may hold. */
+static void check_names(struct case_file *file, const struct key *key,
+                        const struct rheology_model *model) {
+  const char *names[CASE_MAX_NAMES];
+  const struct rheology_key *known;
+  int n = 0;
+  while (n < CASE_MAX_NAMES - 1 && (known = rheology_key(model, n)) != NULL)
+    names[n++] = known->name;
+  names[n++] = "regularisation";
+  if (lua_istable(file->L, -1)) read_known_only(file, key->path, n, names, 1);
+}
+
+/* Push the option `name` of the closure on top, nil if it is a bare name. */
+static void push_option(lua_State *L, const char *name) {
+  if (lua_istable(L, -1))
+    lua_getfield(L, -1, name);
+  else
+    lua_pushnil(L);
+}
+
+static void read_regularisation(struct case_file *file, const char *closure,
+                                struct rheology *rheology) {
+  lua_State *L = file->L;
+  char path[PATH_LENGTH];
+  path_join(path, closure, "regularisation");
+  push_option(L, "regularisation");
+  bool given = !lua_isnil(L, -1);
+  if (given && (lua_type(L, -1) != LUA_TSTRING ||
+                rheology_set_regularisation(rheology, lua_tostring(L, -1)))) {
+    const char *names[REGULARISATIONS];
+    int n = 0;
+    for (; n < REGULARISATIONS && rheology_regularisation_name(n); n++)
+      names[n] = rheology_regularisation_name(n);
+    char known[VALUE_LENGTH];
+    read_suggest(lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "", n,
+                 names, sizeof known, known);
+    read_fail(file, path, "no such regularisation%s", known);
+  }
+  lua_pop(L, 1);
+  if (!given && rheology->model->yield == NULL) return;
+  rows_add(file, path, rheology_regularisation_name(rheology->regularisation),
+           "", "how a yield stress becomes a viscosity at small shear rates",
+           given ? "case" : "default");
+}
+
+static void read_key(struct case_file *file, const char *closure,
+                     struct phase *phase, int i) {
+  const struct rheology_key *known = rheology_key(phase->rheology.model, i);
+  lua_State *L = file->L;
+  char path[PATH_LENGTH], number[32];
+  path_join(path, closure, known->name);
+  const char *unit = strcmp(known->unit, "1") == 0 ? "" : known->unit;
+  struct key key = {.path = path,
+                    .type = KEY_NUMBER,
+                    .low = known->min,
+                    .high = known->max,
+                    .help = known->help};
+  push_option(L, known->name);
+  bool given = !lua_isnil(L, -1);
+  double value = known->initial;
+  /* The bulk density is that of the phase unless the case says otherwise. */
+  if (strcmp(known->name, "rho") == 0) value = phase->density;
+  if (given) value = read_number(file, &key, path);
+  if (!given) lua_pop(L, 1);
+  if (isnan(value)) {
+    char allowed[VALUE_LENGTH];
+    keys_allowed(&key, file->params.dimension, sizeof allowed, allowed);
+    read_fail_at(file, path, "%s is missing: %s (%s)", path, allowed,
+                 known->help);
+  }
+  rheology_set(&phase->rheology, known->name, value);
+  /* Nothing depends on the shear rate of a regularisation that is not used. */
+  if (!given && strcmp(known->name, "gamma_r") == 0 &&
+      phase->rheology.regularisation == RHEOLOGY_CLIP)
+    return;
+  text_number(value, sizeof number, number);
+  rows_add(file, path, number, unit, known->help, given ? "case" : "default");
+}
+
+void closure_read(struct case_file *file, const struct key *key) {
+  lua_State *L = file->L;
+  struct phase *phase = (struct phase *)((char *)&file->params + key->offset);
+  const struct rheology_model *model = read_model(file, key);
+  rheology_init(&phase->rheology, model);
+  check_names(file, key, model);
+  rows_add(file, key->path, model->name, "", model->title, "case");
+  read_regularisation(file, key->path, &phase->rheology);
+  for (int i = 0; rheology_key(model, i) != NULL; i++)
+    read_key(file, key->path, phase, i);
+  if (phase->rheology.eta_min > phase->rheology.eta_max)
+    read_fail_at(file, key->path, "%s: eta_min = %g is above eta_max = %g",
+                 key->path, phase->rheology.eta_min, phase->rheology.eta_max);
+  lua_pop(L, 1);
+}
+
+bool closure_depends_on_pressure(const struct rheology *rheology) {
+  static const double PRESSURES[] = {0, 1e-6, 1e-3, 1, 1e3, 1e6};
+  enum { N = sizeof PRESSURES / sizeof *PRESSURES };
+  struct rheology open = *rheology; /* without bounds that could hide it */
+  open.eta_min = 0;
+  open.eta_max = 1e30;
+  double rate[N], eta[N];
+  for (int i = 0; i < N; i++) rate[i] = 1;
+  rheology_eval(&open, N, rate, PRESSURES, eta);
+  for (int i = 1; i < N; i++)
+    if (eta[i] != eta[0]) return true;
+  return false;
+}

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Functions of position that a case defines and the solver calls. */
+#include <lauxlib.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "case_file.h"
+#include "talus/error.h"
+
+struct case_function *function_keep(struct case_file *file, const char *path,
+                                    const char *unit, const char *help,
+                                    int nresults) {
+  lua_State *L = file->L;
+  if (file->nfunctions == CASE_MAX_FUNCTIONS)
+    read_fail(file, path, "a case may hold %d functions", CASE_MAX_FUNCTIONS);
+  struct case_function *function = &file->functions[file->nfunctions++];
+  lua_Debug where;
+  lua_pushvalue(L, -1);
+  lua_getinfo(L, ">S", &where);
+  char text[VALUE_LENGTH];
+  snprintf(text, sizeof text, "function at line %d", where.linedefined);
+  *function = (struct case_function){.file = file, .nresults = nresults};
+  snprintf(function->path, sizeof function->path, "%s", path);
+  function->reference = luaL_ref(L, LUA_REGISTRYINDEX);
+  rows_add(file, path, text, unit, help, "case");
+  return function;
+}
+
+static void call_text(const struct case_function *function, const double x[3],
+                      size_t size, char *text) {
+  size_t used = (size_t)snprintf(text, size, "%s(", function->path);
+  for (int d = 0; d < function->file->params.dimension && used < size; d++)
+    used += (size_t)snprintf(text + used, size - used, "%s%.6g",
+                             d > 0 ? ", " : "", x[d]);
+  if (used < size) snprintf(text + used, size - used, ")");
+}
+
+void function_fail(struct case_function *function, const double x[3],
+                   const char *format, ...) {
+  struct case_file *file = function->file;
+  char call[VALUE_LENGTH], message[1024];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(message, sizeof message, format, arguments);
+  va_end(arguments);
+  call_text(function, x, sizeof call, call);
+  if (file->loading) read_fail_at(file, function->path, "%s %s", call, message);
+  if (base_size() == 1) USER_ERROR("%s: %s %s", file->path, call, message);
+  /* Other ranks may be elsewhere: an orderly end would wait for them. */
+  FATAL("%s: %s %s", file->path, call, message);
+}
+
+/* Leaves nresults values on the stack. */
+static void call(struct case_function *function, const double x[3]) {
+  struct case_file *file = function->file;
+  lua_State *L = file->L;
+  int dimension = file->params.dimension;
+  lua_rawgeti(L, LUA_REGISTRYINDEX, function->reference);
+  for (int d = 0; d < dimension; d++) lua_pushnumber(L, x[d]);
+  const char *error =
+      sandbox_call(file->sandbox, dimension, function->nresults);
+  if (error != NULL) function_fail(function, x, "fails: %s", error);
+}
+
+static double eval(void *context, const double x[3]) {
+  struct case_function *function = (struct case_function *)context;
+  lua_State *L = function->file->L;
+  call(function, x);
+  int index = function->result - function->nresults;
+  if (lua_type(L, index) != LUA_TNUMBER || !isfinite(lua_tonumber(L, index)))
+    function_fail(function, x, "returned %s, a finite number is needed",
+                  lua_type(L, index) == LUA_TNUMBER ? "inf or nan"
+                                                    : luaL_typename(L, index));
+  double value = lua_tonumber(L, index);
+  lua_pop(L, function->nresults);
+  return value;
+}
+
+struct function function_result(struct case_file *file,
+                                struct case_function *function, int result) {
+  struct case_function *one = function;
+  if (result > 0) {
+    CHECK(file->nfunctions < CASE_MAX_FUNCTIONS, "too many functions");
+    one = &file->functions[file->nfunctions++];
+    *one = *function;
+  }
+  one->result = result;
+  return (struct function){.eval = eval, .context = one};
+}
+
+const char *function_name(struct case_function *function, const double x[3]) {
+  lua_State *L = function->file->L;
+  call(function, x);
+  if (lua_type(L, -1) != LUA_TSTRING)
+    function_fail(function, x,
+                  "returned %s, the name of a boundary is needed (no_slip, "
+                  "slip, symmetry, or one of boundary.patches)",
+                  luaL_typename(L, -1));
+  snprintf(function->name, sizeof function->name, "%s", lua_tostring(L, -1));
+  lua_pop(L, 1);
+  return function->name;
+}
+
+enum { TRIES = 9 }; /* along each axis */
+
+/* Point i of a lattice over the box, corners included. */
+static void try_point(const struct params *params, int i, double x[3]) {
+  for (int d = 0; d < 3; d++, i /= TRIES)
+    x[d] = d < params->dimension
+               ? params->origin[d] +
+                     params->size * params->trees[d] * (i % TRIES) / (TRIES - 1)
+               : 0;
+}
+
+static void try_sides(struct case_file *file, const double x[3], int i) {
+  const struct params *params = &file->params;
+  for (int side = 0; side < 2 * params->dimension; side++) {
+    int on_axis = i;
+    for (int d = 0; d < side / 2; d++) on_axis /= TRIES;
+    if (on_axis % TRIES == (side % 2 ? TRIES - 1 : 0))
+      params->boundary_select(params->boundary_context, side, x);
+  }
+}
+
+static bool chooses_boundary(const struct case_file *file,
+                             const struct case_function *function) {
+  for (int side = 0; side < 6; side++)
+    if (file->side_function[side] == function) return true;
+  return false;
+}
+
+void function_try_all(struct case_file *file) {
+  int npoints =
+      file->params.dimension == 2 ? TRIES * TRIES : TRIES * TRIES * TRIES;
+  for (int i = 0; i < npoints; i++) {
+    double x[3] = {0};
+    try_point(&file->params, i, x);
+    if (file->params.boundary_select != NULL) try_sides(file, x, i);
+    for (int k = 0; k < file->nfunctions; k++)
+      if (!chooses_boundary(file, &file->functions[k]))
+        eval(&file->functions[k], x);
+  }
+}

@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "keys.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "talus/case.h"
+
+#define AT(member) offsetof(struct params, member)
+#define SOME_LEVEL .low = 0, .high = CASE_MAX_LEVEL_2D
+#define POSITIVE .low = 0, .high = INFINITY, .above = true
+#define NOT_NEGATIVE .low = 0, .high = INFINITY
+#define ANY .low = -INFINITY, .high = INFINITY
+#define NEEDED .fallback = NULL
+#define OPTIONAL .fallback = ""
+#define DEFAULT .fallback =
+
+/* Units are SI; any consistent set will do. clang-format would take three
+ * times the lines. */
+/* clang-format off */
+static const struct key KEYS[] = {
+    {"title", KEY_TEXT, ANY, OPTIONAL, .unit = "", .offset = AT(title),
+     .help = "one line that says what the case is about"},
+    {"dimension", KEY_INTEGER, .low = 2, .high = 3, NEEDED, .unit = "",
+     .offset = AT(dimension), .help = "2 or 3"},
+
+    {"domain", KEY_SECTION, NEEDED, .help = "the box and its grid"},
+    {"domain.size", KEY_NUMBER, POSITIVE, NEEDED, .unit = "m",
+     .offset = AT(size), .help = "edge of a tree, a square or cube"},
+    {"domain.origin", KEY_VECTOR, ANY, DEFAULT "0", .unit = "m",
+     .offset = AT(origin), .help = "lower corner of the box"},
+    {"domain.trees", KEY_INTEGERS, .low = 1, .high = 1000, DEFAULT "1",
+     .unit = "", .offset = AT(trees), .help = "trees along each axis"},
+    {"domain.level", KEY_LEVEL, .low = 1, .high = CASE_MAX_LEVEL_2D, NEEDED,
+     .unit = "", .offset = AT(level_max),
+     .help = "finest grid: size/2^level"},
+    {"domain.level_min", KEY_LEVEL, SOME_LEVEL, DEFAULT "1", .unit = "",
+     .offset = AT(level_min), .help = "coarsest grid: size/2^level_min"},
+
+    {"gravity", KEY_VECTOR, ANY, NEEDED, .unit = "m/s^2",
+     .offset = AT(gravity), .help = "acceleration"},
+    {"grains", KEY_SECTION, NEEDED, .help = "the granular phase"},
+    {"grains.density", KEY_NUMBER, POSITIVE, NEEDED, .unit = "kg/m^3",
+     .offset = AT(grains.density), .help = "bulk density"},
+    {"grains.rheology", KEY_CLOSURE, NEEDED, .unit = "",
+     .offset = AT(grains), .help = "closure, see below"},
+    {"grains.shape", KEY_SHAPE, OPTIONAL, .unit = "m", .offset = AT(shape),
+     .help = "level set at t = 0, positive inside; left out with gas, they "
+             "fill the box"},
+    {"gas", KEY_SECTION, OPTIONAL, .help = "the light phase around them"},
+    {"gas.density", KEY_NUMBER, POSITIVE, NEEDED, .unit = "kg/m^3",
+     .offset = AT(gas.density), .help = "density"},
+    {"gas.rheology", KEY_CLOSURE, NEEDED, .unit = "", .offset = AT(gas),
+     .help = "closure, see below"},
+    {"velocity", KEY_VELOCITY, ANY, DEFAULT "0", .unit = "m/s",
+     .offset = AT(velocity), .help = "at t = 0, of grains and gas"},
+    {"tracers", KEY_TRACERS, OPTIONAL, .unit = "m", .offset = AT(tracer),
+     .help = "volumes to be followed, name = shape at t = 0"},
+
+    {"boundary", KEY_SECTION, NEEDED, .help = "what holds on each side"},
+    {"boundary.left", KEY_SIDE, NEEDED, .unit = "", .help = "lower x"},
+    {"boundary.right", KEY_SIDE, NEEDED, .unit = "", .help = "upper x"},
+    {"boundary.front", KEY_SIDE, NEEDED, .unit = "", .help = "lower y, 3D"},
+    {"boundary.back", KEY_SIDE, NEEDED, .unit = "", .help = "upper y, 3D"},
+    {"boundary.bottom", KEY_SIDE, NEEDED, .unit = "",
+     .help = "lower y in 2D, lower z in 3D"},
+    {"boundary.top", KEY_SIDE, NEEDED, .unit = "",
+     .help = "upper y in 2D, upper z in 3D"},
+    {"boundary.patches", KEY_PATCHES, OPTIONAL, .unit = "",
+     .help = "boundaries by name, for sides that are functions"},
+    {"boundary.pressure_level", KEY_NUMBER, ANY, OPTIONAL, .unit = "Pa",
+     .offset = AT(pressure_level),
+     .help = "mean pressure of the box, needed when no boundary sets any"},
+
+    {"adapt", KEY_CRITERIA, OPTIONAL, .unit = "",
+     .help = "list of criteria, the finest wins; without it the grid is "
+             "uniform"},
+    {"adapt.every", KEY_INTEGER, .low = 0, .high = 1e6, DEFAULT "0",
+     .unit = "steps", .offset = AT(adapt_every),
+     .help = "steps between adaptations at most; 0: when the flow needs it"},
+    {"adapt.max_cells", KEY_COUNT, .low = 1, .high = 1e15, DEFAULT "1e8",
+     .unit = "cells", .offset = AT(max_cells),
+     .help = "no refinement beyond this number"},
+
+    {"solver", KEY_SECTION, OPTIONAL, .help = "the numerical method"},
+    {"solver.cfl", KEY_NUMBER, .low = 0, .high = 0.5, .above = true,
+     DEFAULT "0.5", .unit = "", .offset = AT(cfl),
+     .help = "bound on sum |u_f| A dt/(2 V)"},
+    {"solver.dt_max", KEY_NUMBER, POSITIVE, DEFAULT "inf", .unit = "s",
+     .offset = AT(dt_max), .help = "longest time step"},
+    {"solver.tolerance", KEY_NUMBER, .low = 0, .high = 0.1, .above = true,
+     DEFAULT "1e-4", .unit = "", .offset = AT(tolerance_pressure),
+     .help = "of both solvers; 1e-4 collapse, 1e-8 analytic, 1e-12 at rest"},
+    {"solver.tolerance_pressure", KEY_NUMBER, .low = 0, .high = 0.1,
+     .above = true, DEFAULT "solver.tolerance", .unit = "",
+     .offset = AT(tolerance_pressure), .help = "max |div u| dt"},
+    {"solver.tolerance_viscous", KEY_NUMBER, .low = 0, .high = 0.1,
+     .above = true, DEFAULT "solver.tolerance", .unit = "",
+     .offset = AT(tolerance_viscous),
+     .help = "max |dt r/rho|, relative to the speed"},
+    {"solver.max_iterations", KEY_INTEGER, .low = 1, .high = 1e6,
+     DEFAULT "100", .unit = "", .offset = AT(max_iterations),
+     .help = "of one linear solve"},
+    {"solver.picard", KEY_INTEGER, .low = 0, .high = 1000, DEFAULT "0",
+     .unit = "", .offset = AT(picard),
+     .help = "repetitions of viscosity and projection in a step"},
+    {"solver.theta", KEY_NUMBER, .low = 0.5, .high = 1, DEFAULT "1",
+     .unit = "", .offset = AT(theta),
+     .help = "viscous step: 1 backward Euler, 0.5 Crank-Nicolson"},
+
+    {"output", KEY_SECTION, NEEDED, .help = "when to end and what to write"},
+    {"output.stop", KEY_NUMBER, POSITIVE, NEEDED, .unit = "s",
+     .offset = AT(stop), .help = "time of the end"},
+    {"output.length_scale", KEY_NUMBER, POSITIVE, DEFAULT "1", .unit = "m",
+     .offset = AT(length_scale),
+     .help = "a length of the problem, for reading and pictures only"},
+    {"output.profile_times", KEY_TIMES, .low = 0, .high = INFINITY, OPTIONAL,
+     .unit = "s", .help = "times of outlines in profile.csv"},
+    {"output.snapshot_every", KEY_NUMBER, NOT_NEGATIVE, DEFAULT "0",
+     .unit = "s", .offset = AT(snapshot_every),
+     .help = "time between snapshots; 0: the first and the last only"},
+    {"output.series_every", KEY_INTEGER, .low = 1, .high = 1e9, DEFAULT "1",
+     .unit = "steps", .offset = AT(series_every),
+     .help = "steps between rows of series.csv"},
+    {"output.checkpoint_every", KEY_NUMBER, NOT_NEGATIVE, DEFAULT "600",
+     .unit = "s", .offset = AT(checkpoint_every),
+     .help = "wall-clock time between checkpoints; 0: at the end only"},
+
+    {"expect", KEY_EXPECT, OPTIONAL, .unit = "",
+     .help = "for make examples-check: run = \"name=value ...\" and, for "
+             "columns of the last row of series.csv, {least, most}"},
+};
+
+static const struct boundary_kind BOUNDARY_KINDS[] = {
+    {"no_slip", BOUNDARY_NO_SLIP, {"velocity"}, NULL,
+     "wall, at rest or moving tangentially"},
+    {"slip", BOUNDARY_SLIP, {NULL}, NULL, "wall without friction"},
+    {"symmetry", BOUNDARY_SLIP, {NULL}, NULL, "mirror, the same as slip"},
+    {"navier_slip", BOUNDARY_NAVIER, {"slip_length"}, "slip_length",
+     "wall, u = slip_length du/dn"},
+    {"outflow", BOUNDARY_OUTFLOW, {"pressure"}, NULL,
+     "open, with this pressure"},
+    {"inflow", BOUNDARY_INFLOW, {"velocity", "fraction"}, "velocity",
+     "open, with this velocity"},
+    {"periodic", BOUNDARY_PERIODIC, {NULL}, NULL,
+     "joined with the opposite side, which must say so too"},
+};
+
+#undef AT
+#define AT(member) offsetof(struct boundary, member)
+static const struct key BOUNDARY_OPTIONS[] = {
+    {"velocity", KEY_VECTOR, ANY, DEFAULT "0", .unit = "m/s",
+     .offset = AT(velocity), .help = "velocity at the boundary"},
+    {"pressure", KEY_NUMBER, ANY, DEFAULT "0", .unit = "Pa",
+     .offset = AT(pressure), .help = "pressure at the boundary"},
+    {"slip_length", KEY_NUMBER, NOT_NEGATIVE, NEEDED, .unit = "m",
+     .offset = AT(slip_length), .help = "depth at which u would vanish"},
+    {"fraction", KEY_NUMBER, .low = 0, .high = 1, DEFAULT "0", .unit = "",
+     .offset = AT(fraction), .help = "volume fraction of grains carried in"},
+};
+
+static const struct criterion_kind CRITERION_KINDS[] = {
+    {"interface", CRITERION_INTERFACE, {"width", "level"},
+     "a band around the surface of the grains"},
+    {"inside", CRITERION_INSIDE, {"level"}, "all of the grains"},
+    {"velocity", CRITERION_ESTIMATE, {"threshold", "level"},
+     "where the wavelet estimate of the velocity's error is large"},
+    {"position", CRITERION_FUNCTION, {"level"},
+     "level = function of position, constant in time"},
+};
+
+#undef AT
+#define AT(member) offsetof(struct criterion, member)
+static const struct key CRITERION_OPTIONS[] = {
+    {"width", KEY_NUMBER, .low = 0, .high = 1000, .above = true, DEFAULT "3",
+     .unit = "cells", .offset = AT(width), .help = "half of the band's width"},
+    {"threshold", KEY_NUMBER, POSITIVE, NEEDED, .unit = "m/s",
+     .offset = AT(threshold), .help = "largest error left alone"},
+    {"level", KEY_LEVEL, SOME_LEVEL, DEFAULT "domain.level", .unit = "",
+     .offset = AT(level), .help = "finest level asked for"},
+};
+/* clang-format on */
+
+#define GET(array, i)                                                      \
+  ((i) >= 0 && (size_t)(i) < sizeof(array) / sizeof *(array) ? &(array)[i] \
+                                                             : NULL)
+
+const struct key *keys_get(int i) { return GET(KEYS, i); }
+
+const struct boundary_kind *keys_boundary_kind(int i) {
+  return GET(BOUNDARY_KINDS, i);
+}
+
+const struct key *keys_boundary_option(int i) {
+  return GET(BOUNDARY_OPTIONS, i);
+}
+
+const struct criterion_kind *keys_criterion_kind(int i) {
+  return GET(CRITERION_KINDS, i);
+}
+
+const struct key *keys_criterion_option(int i) {
+  return GET(CRITERION_OPTIONS, i);
+}
+
+const char *keys_side_name(int dimension, int side) {
+  static const char *const NAMES[2][6] = {
+      {"left", "right", "bottom", "top", NULL, NULL},
+      {"left", "right", "front", "back", "bottom", "top"}};
+  return side >= 0 && side < 6 ? NAMES[dimension == 3][side] : NULL;
+}
+
+/* " > 0", " from 1 to 24" */
+static void range_text(const struct key *key, size_t size, char *text) {
+  const char *above = key->above ? ">" : ">=";
+  if (isfinite(key->high) && isfinite(key->low) && !key->above)
+    snprintf(text, size, " from %g to %g", key->low, key->high);
+  else if (isfinite(key->high) && isfinite(key->low))
+    snprintf(text, size, " > %g and <= %g", key->low, key->high);
+  else if (isfinite(key->low))
+    snprintf(text, size, " %s %g", above, key->low);
+  else
+    snprintf(text, size, "%s", "");
+}
+
+void keys_allowed(const struct key *key, int dimension, size_t size,
+                  char *text) {
+  char range[64];
+  range_text(key, sizeof range, range);
+  const char *axes = dimension == 2 ? "2 " : dimension == 3 ? "3 " : "";
+  const char *at = dimension == 3 ? "x, y, z" : "x, y";
+  switch (key->type) {
+    case KEY_NUMBER:
+      snprintf(text, size, "a number%s", range);
+      break;
+    case KEY_INTEGER:
+    case KEY_COUNT:
+    case KEY_LEVEL:
+      snprintf(text, size, "an integer%s", range);
+      break;
+    case KEY_VECTOR:
+      snprintf(text, size, "a list of %snumbers", axes);
+      break;
+    case KEY_INTEGERS:
+      snprintf(text, size, "a list of %sintegers%s", axes, range);
+      break;
+    case KEY_TEXT:
+      snprintf(text, size, "a text");
+      break;
+    case KEY_TIMES:
+      snprintf(text, size, "a list of times >= 0");
+      break;
+    case KEY_SHAPE:
+      snprintf(text, size, "a function(%s)", at);
+      break;
+    case KEY_VELOCITY:
+      snprintf(text, size, "%snumbers or a function(%s)", axes, at);
+      break;
+    case KEY_CLOSURE:
+      snprintf(text, size, "{\"closure\", key = value, ...}");
+      break;
+    case KEY_SIDE:
+      snprintf(text, size,
+               "\"type\", {\"type\", option = value} or a function(%s)", at);
+      break;
+    case KEY_CRITERIA:
+      snprintf(text, size, "a list of {\"criterion\", option = value}");
+      break;
+    case KEY_TRACERS:
+    case KEY_PATCHES:
+    case KEY_EXPECT:
+    case KEY_SECTION:
+      snprintf(text, size, "a table");
+      break;
+  }
+}

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/adapt.h"
+
+#include <math.h>
+#include <mpi.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/log.h"
+#include "talus/memory.h"
+#include "talus/properties.h"
+#include "talus/remap.h"
+#include "talus/simulation.h"
+
+/* Cells by which a criterion is widened before a leaf may be merged. */
+enum { HYSTERESIS = 1 };
+
+static bool is_surface(double c) {
+  return c > PROPERTIES_GAS && c < 1 - PROPERTIES_GAS;
+}
+
+/* mark [ncells] = 1 in leaves cut by the surface, or between a full and an
+ * empty neighbour. */
+static void mark_surface(const struct mesh *mesh, const double *c,
+                         double *mark) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    bool cut = is_surface(c[i]);
+    for (int f = 0; f < NFACE && !cut; f++) {
+      const double next = c[mesh->stencil[i][stencil_face(f)]];
+      cut = is_surface(next) || (c[i] > 0.5) != (next > 0.5);
+    }
+    mark[i] = cut;
+  }
+}
+
+/* Spread a mark by one leaf in every direction. */
+static void spread(const struct mesh *mesh, const struct bc *bc, double *mark,
+                   double *scratch) {
+  const struct bc *bcs[] = {bc};
+  mesh_fill(mesh, 1, &mark, bcs, false);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double most = 0;
+    for (int s = 0; s < NSTENCIL; s++) {
+      int32_t node = mesh->stencil[i][s];
+      if (node >= mesh->begin_boundary) continue;
+      if (node >= mesh->begin_virtual) {
+        node = mesh->virtual_leaf[(node - mesh->begin_virtual) / NCHILD];
+      }
+      most = fmax(most, mark[node]);
+    }
+    scratch[i] = most > 0;
+  }
+  memcpy(mark, scratch, (size_t)mesh->nleaves * sizeof *mark);
+}
+
+struct wanted {
+  int8_t *divide; /* [nleaves] finest level asked for */
+  int8_t *keep;   /* level above which a leaf may be merged */
+};
+
+static void want(struct wanted *wanted, int32_t i, int divide, int keep) {
+  if (divide > wanted->divide[i]) wanted->divide[i] = (int8_t)divide;
+  if (keep > wanted->keep[i]) wanted->keep[i] = (int8_t)keep;
+}
+
+static void want_surface(struct simulation *sim,
+                         const struct criterion *criterion,
+                         struct wanted *wanted) {
+  const struct mesh *mesh = sim->mesh;
+  double *mark = sim->cell[0]->v, *scratch = sim->cell[1]->v;
+  const int width = (int)ceil(criterion->width);
+  mark_surface(mesh, sim->c->v, mark);
+  for (int k = 0; k <= width + HYSTERESIS; k++) {
+    if (k > 0) spread(mesh, sim->cell[0]->bc, mark, scratch);
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      if (mark[i] > 0) {
+        want(wanted, i, k <= width ? criterion->level : 0, criterion->level);
+      }
+    }
+  }
+}
+
+static void want_inside(const struct simulation *sim,
+                        const struct criterion *criterion,
+                        struct wanted *wanted) {
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    if (sim->c->v[i] > PROPERTIES_GAS) {
+      want(wanted, i, criterion->level, criterion->level);
+    }
+  }
+}
+
+/* Half the second difference of the velocity: what merging would lose. */
+static void want_estimate(struct simulation *sim,
+                          const struct criterion *criterion,
+                          struct wanted *wanted) {
+  const struct mesh *mesh = sim->mesh;
+  field_fill_many(mesh, DIM, sim->u);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t *node = mesh->stencil[i];
+    double estimate = 0;
+    for (int e = 0; e < DIM; e++) {
+      const double *v = sim->u[e]->v;
+      for (int d = 0; d < DIM; d++) {
+        const double mean = 0.5 * (v[node[stencil_face(2 * d)]] +
+                                   v[node[stencil_face(2 * d + 1)]]);
+        estimate = fmax(estimate, fabs(v[i] - mean));
+      }
+    }
+    const bool fine = estimate > criterion->threshold;
+    const bool keep = estimate > 0.25 * criterion->threshold;
+    want(wanted, i, fine ? criterion->level : 0, keep ? criterion->level : 0);
+  }
+}
+
+static void want_function(const struct simulation *sim,
+                          const struct criterion *criterion,
+                          struct wanted *wanted) {
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    double x[3] = {0};
+    for (int d = 0; d < DIM; d++) x[d] = sim->mesh->x[i][d];
+    int level = (int)floor(
+        criterion->function.eval(criterion->function.context, x) + 0.5);
+    if (level > criterion->level) level = criterion->level;
+    want(wanted, i, level, level);
+  }
+}
+
+static void apply_criteria(struct simulation *sim, struct wanted *wanted) {
+  const struct params *params = sim->params;
+  for (int k = 0; k < params->ncriteria; k++) {
+    const struct criterion *criterion = &params->criterion[k];
+    switch (criterion->type) {
+      case CRITERION_INTERFACE:
+        want_surface(sim, criterion, wanted);
+        break;
+      case CRITERION_INSIDE:
+        want_inside(sim, criterion, wanted);
+        break;
+      case CRITERION_ESTIMATE:
+        want_estimate(sim, criterion, wanted);
+        break;
+      case CRITERION_FUNCTION:
+        want_function(sim, criterion, wanted);
+        break;
+    }
+  }
+}
+
+/* Above the cap nothing is divided any more. */
+static void cap_count(const struct simulation *sim, int8_t *flag) {
+  const struct mesh *mesh = sim->mesh;
+  double growth = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    growth += flag[i] > 0 ? NCHILD - 1 : 0;
+  }
+  growth = mesh_sum(mesh, growth);
+  const double count = (double)forest_nleaves_global(sim->forest) + growth;
+  if (sim->params->max_cells == 0 || count <= (double)sim->params->max_cells) {
+    return;
+  }
+  WARN_ONCE(
+      "%.0f cells wanted, max_cells is %lld: the grid stays coarser "
+      "than the criteria ask for",
+      count, (long long)sim->params->max_cells);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (flag[i] > 0) flag[i] = 0;
+  }
+}
+
+void adapt_flags(struct simulation *sim, int8_t *flag) {
+  const struct mesh *mesh = sim->mesh;
+  struct wanted wanted = {MEM_NEW(int8_t, mesh->nleaves),
+                          MEM_NEW(int8_t, mesh->nleaves)};
+  apply_criteria(sim, &wanted);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    flag[i] = 0;
+    if (mesh->level[i] < wanted.divide[i]) flag[i] = 1;
+    if (mesh->level[i] > wanted.keep[i]) flag[i] = -1;
+  }
+  cap_count(sim, flag);
+  mem_free(wanted.divide);
+  mem_free(wanted.keep);
+}
+
+bool adapt_is_due(const struct simulation *sim) {
+  const struct params *params = sim->params;
+  if (params->ncriteria == 0) return false;
+  if (params->adapt_every > 0) return sim->step % params->adapt_every == 0;
+  double spare = 4; /* cells the surface may move */
+  for (int k = 0; k < params->ncriteria; k++) {
+    if (params->criterion[k].type == CRITERION_INTERFACE) {
+      spare = fmin(spare, fmax(params->criterion[k].width - 1, 0));
+    }
+  }
+  return sim->travel >= spare;
+}
+
+bool adapt_grid(struct simulation *sim) {
+  const double start = MPI_Wtime();
+  int8_t *flag = MEM_NEW(int8_t, sim->mesh->nleaves);
+  struct forest_map map;
+  field_fill(sim->mesh, sim->c);
+  adapt_flags(sim, flag);
+  const bool changed = forest_adapt(sim->forest, flag, sim->params->level_min,
+                                    sim->params->level_max, &map);
+  if (changed) remap_fields(sim, &map);
+  forest_map_destroy(&map);
+  mem_free(flag);
+  sim->travel = 0;
+  sim->mesh_seconds += MPI_Wtime() - start;
+  return changed;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/advection.h"
+
+#include <math.h>
+
+#include "talus/momentum.h"
+
+/* Slopes along d of u_e, and its upwind change along the other axes with the
+ * velocities w: cell velocities, or (u_f given) the mean of the two faces. */
+static void cell_terms(const struct mesh *mesh, int d, const double *u_e,
+                       double *const u[DIM], const double *u_f, double *slope,
+                       double *transverse) {
+  const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t *node = mesh->stencil[i];
+    slope[i] = 0.5 * (u_e[node[upper]] - u_e[node[lower]]);
+    double sum = 0;
+    for (int t = 0; t < DIM; t++) {
+      if (t == d) continue;
+      const int32_t *face = mesh->cell_face[i];
+      const double w =
+          u_f ? 0.5 * (u_f[face[2 * t]] + u_f[face[2 * t + 1]]) : u[t][i];
+      const double below = u_e[i] - u_e[node[stencil_face(2 * t)]];
+      const double above = u_e[node[stencil_face(2 * t + 1)]] - u_e[i];
+      sum += w * (w < 0 ? above : below);
+    }
+    transverse[i] = sum / mesh->h[i];
+  }
+}
+
+/* The formula of the header at one face, for the sign of u_n. */
+static inline double face_value(const struct mesh *mesh, int32_t f, double u_n,
+                                double dt, const double *u_e, const double *g_e,
+                                const double *slope, const double *transverse) {
+  const int upwind = u_n > 0 ? 0 : 1;
+  const int32_t *node = mesh->face_node[f];
+  const int32_t leaf = mesh->face_leaf[f][upwind];
+  if (leaf < 0) return 0.5 * (u_e[node[0]] + u_e[node[1]]);
+  const double h = mesh->face_h[f];
+  const double reach = (upwind ? -1 : 1) - u_n * dt / h;
+  return u_e[node[upwind]] + 0.5 * reach * slope[leaf] * (h / mesh->h[leaf]) -
+         0.5 * dt * transverse[leaf] +
+         0.25 * dt * (g_e[node[0]] + g_e[node[1]]);
+}
+
+void advection_predict(const struct mesh *mesh, double dt, double *const u[DIM],
+                       double *const g[DIM], const bool *closed,
+                       struct advection_work *work, double *u_f) {
+  double *v[2] = {work->slope[0], work->transverse[0]};
+  for (int d = 0; d < DIM; d++) {
+    cell_terms(mesh, d, u[d], u, NULL, v[0], v[1]);
+    mesh_fill_ghosts(mesh, 2, v);
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      const int patch = mesh->face_patch[f];
+      const double u_n = 0.5 * (u[d][node[0]] + u[d][node[1]]);
+      if (patch >= 0 && closed[patch]) {
+        u_f[f] = u_n; /* the wall's own normal velocity */
+      } else {
+        u_f[f] = face_value(mesh, f, u_n, dt, u[d], g[d], v[0], v[1]);
+      }
+    }
+  }
+  mesh_fill_faces(mesh, 1, &u_f);
+}
+
+static void axis_fluxes(const struct mesh *mesh, int d, double dt,
+                        double *const u[DIM], double *const g[DIM],
+                        const double *u_f, const double *band,
+                        struct advection_work *work) {
+  double *v[2 * DIM];
+  for (int e = 0; e < DIM; e++) {
+    v[2 * e] = work->slope[e], v[2 * e + 1] = work->transverse[e];
+    cell_terms(mesh, d, u[e], u, u_f, v[2 * e], v[2 * e + 1]);
+  }
+  mesh_fill_ghosts(mesh, 2 * DIM, v);
+  for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+    const bool skip = band && momentum_face_in_band(mesh, band, f);
+    const double u_n = skip ? 0 : u_f[f];
+    work->volume[f] = u_n;
+    for (int e = 0; e < DIM; e++) {
+      work->flux[e][f] = u_n == 0
+                             ? 0
+                             : u_n * face_value(mesh, f, u_n, dt, u[e], g[e],
+                                                v[2 * e], v[2 * e + 1]);
+    }
+  }
+}
+
+void advection_momentum(const struct mesh *mesh, double dt,
+                        double *const u[DIM], double *const g[DIM],
+                        const double *u_f, const double *band,
+                        struct advection_work *work, double *const out[DIM]) {
+  for (int d = 0; d < DIM; d++) {
+    axis_fluxes(mesh, d, dt, u, g, u_f, band, work);
+  }
+  double *v[DIM + 1] = {work->volume};
+  for (int e = 0; e < DIM; e++) v[e + 1] = work->flux[e];
+  mesh_fill_faces(mesh, DIM + 1, v);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t *face = mesh->cell_face[i];
+    double net = 0;
+    for (int d = 0; d < DIM; d++) {
+      net += work->volume[face[2 * d + 1]] - work->volume[face[2 * d]];
+    }
+    for (int e = 0; e < DIM; e++) {
+      double sum = -net * u[e][i];
+      for (int d = 0; d < DIM; d++) {
+        sum += work->flux[e][face[2 * d + 1]] - work->flux[e][face[2 * d]];
+      }
+      out[e][i] -= dt / mesh->h[i] * sum;
+    }
+  }
+}

@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Invariants
+ * 1. Nodes [0, nleaves) are the leaves; inner nodes follow, parents before
+ *    their children.
+ * 2. A straddling node has leaves on several ranks. All ranks that hold part
+ *    of it know the net outflow of all its children before it is treated,
+ *    and treat it alike.
+ */
+#include "talus/clean.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/memory.h"
+
+struct clean {
+  uint64_t revision;
+  int32_t ninner, capacity;
+  int32_t (*child)[NCHILD]; /* [ninner] nodes, -1: on another rank */
+  int8_t *level;            /* [ninner] */
+  uint64_t *key;            /* [ninner] */
+  int32_t *slot;            /* [ninner] place in `shared`, -1: all ours */
+  int32_t *root;            /* [ntrees] node, -1: on another rank */
+  int32_t ntrees;
+  int trees[DIM];
+  bool periodic[DIM];
+  uint64_t tree_span;
+  int32_t *tree_number; /* [ntrees] curve number of the tree at a place */
+  int32_t nslots;
+  double *shared;          /* [nslots NCHILD] */
+  double *net;             /* [nleaves + ninner] outflow, m^DIM/s */
+  double (*change)[NFACE]; /* [nleaves + ninner] change of face fluxes */
+  double *tree_net;        /* [ntrees] */
+  double (*tree_change)[NFACE];
+};
+
+static int32_t add_inner(struct clean *clean, uint64_t key, int level) {
+  if (clean->ninner == clean->capacity) {
+    clean->capacity = 2 * clean->capacity + 64;
+    const size_t n = (size_t)clean->capacity;
+    clean->child = mem_resize(clean->child, n, sizeof *clean->child);
+    clean->level = mem_resize(clean->level, n, sizeof *clean->level);
+    clean->key = mem_resize(clean->key, n, sizeof *clean->key);
+  }
+  const int32_t k = clean->ninner++;
+  for (int c = 0; c < NCHILD; c++) clean->child[k][c] = -1;
+  clean->level[k] = (int8_t)level;
+  clean->key[k] = key;
+  return k;
+}
+
+/* One walk over the sorted leaves, with the open path from the root. */
+static void link_nodes(struct clean *clean, const struct mesh *mesh) {
+  int32_t path[FOREST_MAX_LEVEL + 1];
+  uint64_t path_key[FOREST_MAX_LEVEL + 1];
+  int open = 0; /* levels [0, open) of the path are valid */
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int level = mesh->level[i];
+    int l = 0;
+    while (l < open && l < level &&
+           (mesh->key[i] & ~(mesh_key_span(l) - 1)) == path_key[l]) {
+      l++;
+    }
+    for (open = l; open <= level; open++) {
+      const uint64_t key = mesh->key[i] & ~(mesh_key_span(open) - 1);
+      int32_t node = i;
+      if (open < level) {
+        path[open] = add_inner(clean, key, open);
+        path_key[open] = key;
+        node = mesh->nleaves + path[open];
+      }
+      if (open == 0) {
+        clean->root[key / clean->tree_span] = node;
+      } else {
+        const int c = (int)(key / mesh_key_span(open)) & (NCHILD - 1);
+        clean->child[path[open - 1]][c] = node;
+      }
+    }
+    open = level;
+  }
+}
+
+/* A node straddles ranks where a rank's share begins inside it; it is named
+ * by the first such rank and its level. */
+static void mark_straddling(struct clean *clean, const struct mesh *mesh) {
+  clean->slot = MEM_NEW(int32_t, clean->ninner);
+  clean->nslots = mesh->nranks * (FOREST_MAX_LEVEL + 1);
+  for (int32_t k = 0; k < clean->ninner; k++) {
+    const uint64_t key = clean->key[k];
+    const uint64_t end = key + mesh_key_span(clean->level[k]);
+    clean->slot[k] = -1;
+    if (key >= mesh->first_keys[mesh->rank] &&
+        end <= mesh->first_keys[mesh->rank + 1]) {
+      continue;
+    }
+    for (int r = 1; r < mesh->nranks; r++) {
+      if (mesh->first_keys[r] > key && mesh->first_keys[r] < end) {
+        clean->slot[k] = r * (FOREST_MAX_LEVEL + 1) + clean->level[k];
+        break;
+      }
+    }
+  }
+  clean->shared = MEM_NEW(double, (size_t)clean->nslots *NCHILD);
+}
+
+/* Curve numbers of the trees by place, from their first leaves. */
+static void number_trees(struct clean *clean, const struct mesh *mesh) {
+  const struct forest_layout *layout = forest_layout(mesh->forest);
+  clean->ntrees = 1;
+  for (int d = 0; d < DIM; d++) {
+    clean->trees[d] = layout->trees[d];
+    clean->periodic[d] = layout->periodic[d];
+    clean->ntrees *= layout->trees[d];
+  }
+  clean->tree_span = mesh_key_span(0);
+  clean->root = MEM_NEW(int32_t, clean->ntrees);
+  clean->tree_number = MEM_NEW(int32_t, clean->ntrees);
+  clean->tree_net = MEM_NEW(double, clean->ntrees);
+  clean->tree_change =
+      mem_alloc((size_t)clean->ntrees, sizeof *clean->tree_change);
+  for (int32_t t = 0; t < clean->ntrees; t++) {
+    clean->root[t] = -1;
+    clean->tree_number[t] = -1;
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    int32_t place = 0;
+    for (int d = DIM - 1; d >= 0; d--) {
+      double x = (mesh->x[i][d] - layout->origin[d]) / layout->size;
+      place = place * clean->trees[d] + (int32_t)x;
+    }
+    clean->tree_number[place] = (int32_t)(mesh->key[i] / clean->tree_span);
+  }
+  MPI_CHECK(MPI_Allreduce(MPI_IN_PLACE, clean->tree_number, clean->ntrees,
+                          MPI_INT32_T, MPI_MAX, mesh->comm));
+}
+
+struct clean *clean_new(const struct mesh *mesh) {
+  struct clean *clean = MEM_NEW(struct clean, 1);
+  clean->revision = mesh->revision;
+  number_trees(clean, mesh);
+  link_nodes(clean, mesh);
+  mark_straddling(clean, mesh);
+  const size_t n = (size_t)mesh->nleaves + (size_t)clean->ninner;
+  clean->net = MEM_NEW(double, n);
+  clean->change = mem_alloc(n, sizeof *clean->change);
+  return clean;
+}
+
+void clean_destroy(struct clean *clean) {
+  if (!clean) return;
+  void *owned[] = {clean->child,    clean->level,       clean->key,
+                   clean->slot,     clean->root,        clean->tree_number,
+                   clean->shared,   clean->net,         clean->change,
+                   clean->tree_net, clean->tree_change, clean};
+  for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
+}
+
+static double net_outflow(const struct mesh *mesh, const double *u_f,
+                          int32_t i) {
+  double net = 0;
+  for (int d = 0; d < DIM; d++) {
+    net += u_f[mesh->cell_face[i][2 * d + 1]] - u_f[mesh->cell_face[i][2 * d]];
+  }
+  return net * (mesh->volume[i] / mesh->h[i]);
+}
+
+double clean_divergence(const struct mesh *mesh, const double *u_f) {
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    most = fmax(most, fabs(net_outflow(mesh, u_f, i)) / mesh->volume[i]);
+  }
+  return mesh_max(mesh, most);
+}
+
+/* Let the total excess out through the open boundary faces. */
+static void balance_boundaries(const struct mesh *mesh, const bool *open,
+                               double *u_f) {
+  double sum[2] = {0}; /* net outflow, open area */
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    sum[0] += net_outflow(mesh, u_f, i);
+  }
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    if (mesh->face_patch[f] >= 0 && open[mesh->face_patch[f]]) {
+      sum[1] += pow(mesh->face_h[f], DIM - 1);
+    }
+  }
+  MPI_CHECK(
+      MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, mesh->comm));
+  if (sum[1] == 0) return;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    if (mesh->face_patch[f] >= 0 && open[mesh->face_patch[f]]) {
+      u_f[f] -= (mesh->face_leaf[f][1] < 0 ? 1 : -1) * sum[0] / sum[1];
+    }
+  }
+}
+
+/* Net outflow of every node, from the leaves up; the parts of straddling
+ * nodes are added over ranks. */
+static void gather_net(struct clean *clean, const struct mesh *mesh,
+                       const double *u_f) {
+  const int32_t n = mesh->nleaves;
+  for (int32_t i = 0; i < n; i++) clean->net[i] = net_outflow(mesh, u_f, i);
+  if (mesh->nranks > 1) {
+    memset(clean->shared, 0,
+           (size_t)clean->nslots * NCHILD * sizeof *clean->shared);
+  }
+  memset(clean->tree_net, 0, (size_t)clean->ntrees * sizeof *clean->tree_net);
+  for (int32_t k = clean->ninner - 1; k >= 0; k--) {
+    double sum = 0;
+    for (int c = 0; c < NCHILD; c++) {
+      const int32_t child = clean->child[k][c];
+      if (child < 0) continue;
+      sum += clean->net[child];
+      if (clean->slot[k] >= 0) {
+        clean->shared[clean->slot[k] * NCHILD + c] = clean->net[child];
+      }
+    }
+    clean->net[n + k] = sum;
+  }
+  for (int32_t t = 0; t < clean->ntrees; t++) {
+    if (clean->root[t] >= 0) clean->tree_net[t] = clean->net[clean->root[t]];
+  }
+  if (mesh->nranks > 1) {
+    MPI_CHECK(MPI_Allreduce(MPI_IN_PLACE, clean->shared, clean->nslots * NCHILD,
+                            MPI_DOUBLE, MPI_SUM, mesh->comm));
+    MPI_CHECK(MPI_Allreduce(MPI_IN_PLACE, clean->tree_net, clean->ntrees,
+                            MPI_DOUBLE, MPI_SUM, mesh->comm));
+  }
+}
+
+/* Trees hand their excess down along the last axis first, towards place 0. */
+static void balance_trees(struct clean *clean) {
+  memset(clean->tree_change, 0,
+         (size_t)clean->ntrees * sizeof *clean->tree_change);
+  int32_t stride = clean->ntrees, rows = clean->ntrees;
+  for (int d = DIM - 1; d >= 0; d--) {
+    stride /= clean->trees[d];
+    for (int32_t place = rows - 1; place >= stride; place--) {
+      const int32_t from = clean->tree_number[place];
+      const int32_t to = clean->tree_number[place - stride];
+      const double excess = clean->tree_net[from];
+      clean->tree_change[from][2 * d] += excess;
+      clean->tree_change[to][2 * d + 1] += excess;
+      clean->tree_net[to] += excess;
+      clean->tree_net[from] = 0;
+    }
+    rows = stride;
+  }
+}
+
+/* Changes on the faces between the children whose net outflows are N. */
+static void share_out(const double net[NCHILD], double change[NCHILD][NFACE]) {
+  double psi[NCHILD];
+  memcpy(psi, net, sizeof psi);
+  for (int pass = 0; pass < 2; pass++) { /* transform, divide, transform */
+    for (int d = 0; d < DIM; d++) {
+      for (int a = 0; a < NCHILD; a++) {
+        if (a >> d & 1) continue;
+        const int b = a | 1 << d;
+        const double low = psi[a], high = psi[b];
+        psi[a] = low + high, psi[b] = low - high;
+      }
+    }
+    for (int k = 0; k < NCHILD && pass == 0; k++) {
+      int bits = 0;
+      for (int d = 0; d < DIM; d++) bits += k >> d & 1;
+      psi[k] = bits ? -psi[k] / (2.0 * bits * NCHILD) : 0;
+    }
+  }
+  for (int a = 0; a < NCHILD; a++) {
+    for (int d = 0; d < DIM; d++) {
+      if (a >> d & 1) continue;
+      const int b = a | 1 << d;
+      change[a][2 * d + 1] = change[b][2 * d] = psi[a] - psi[b];
+    }
+  }
+}
+
+static void treat_node(struct clean *clean, int32_t nleaves, int32_t k) {
+  double net[NCHILD], change[NCHILD][NFACE];
+  const double *above = clean->change[nleaves + k];
+  for (int c = 0; c < NCHILD; c++) {
+    const int32_t child = clean->child[k][c];
+    net[c] = clean->slot[k] >= 0 ? clean->shared[clean->slot[k] * NCHILD + c]
+                                 : clean->net[child];
+    for (int f = 0; f < NFACE; f++) {
+      if ((c >> (f >> 1) & 1) != (f & 1)) continue; /* an inner face */
+      change[c][f] = above[f] / (NCHILD / 2);
+      net[c] += f & 1 ? change[c][f] : -change[c][f];
+    }
+  }
+  share_out(net, change);
+  for (int c = 0; c < NCHILD; c++) {
+    const int32_t child = clean->child[k][c];
+    if (child >= 0) memcpy(clean->change[child], change[c], sizeof change[c]);
+  }
+}
+
+void clean_face_velocity(struct clean *clean, const struct mesh *mesh,
+                         const bool *open, double *u_f) {
+  CHECK(clean->revision == mesh->revision, "tree of another mesh");
+  mesh_fill_faces(mesh, 1, &u_f);
+  balance_boundaries(mesh, open, u_f);
+  mesh_fill_faces(mesh, 1, &u_f);
+  gather_net(clean, mesh, u_f);
+  balance_trees(clean);
+  for (int32_t t = 0; t < clean->ntrees; t++) {
+    if (clean->root[t] < 0) continue;
+    memcpy(clean->change[clean->root[t]], clean->tree_change[t],
+           sizeof *clean->change);
+  }
+  for (int32_t k = 0; k < clean->ninner; k++) {
+    treat_node(clean, mesh->nleaves, k);
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double area = mesh->volume[i] / mesh->h[i];
+    for (int f = 0; f < NFACE; f++) {
+      const int32_t face = mesh->cell_face[i][f];
+      if (face < mesh->nfaces && mesh->face_owner[face] == i &&
+          mesh->face_patch[face] < 0) {
+        u_f[face] += clean->change[i][f] / area;
+      }
+    }
+  }
+  mesh_fill_faces(mesh, 1, &u_f);
+}

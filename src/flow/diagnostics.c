@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/diagnostics.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/memory.h"
+#include "talus/plane.h"
+#include "talus/simulation.h"
+
+/* A compensated sum: value + rest is the sum to twice the precision. */
+struct sum {
+  double value, rest;
+};
+
+static inline void sum_add(struct sum *sum, double x) {
+  double t = sum->value + x;
+  sum->rest +=
+      fabs(sum->value) >= fabs(x) ? (sum->value - t) + x : (x - t) + sum->value;
+  sum->value = t;
+}
+
+/* The sum over all ranks, always in the same order. */
+static double sum_total(const struct mesh *mesh, struct sum local) {
+  struct sum *all = MEM_NEW(struct sum, (size_t)mesh->nranks);
+  MPI_CHECK(
+      MPI_Allgather(&local, 2, MPI_DOUBLE, all, 2, MPI_DOUBLE, mesh->comm));
+  struct sum total = {0, 0};
+  for (int r = 0; r < mesh->nranks; r++) {
+    sum_add(&total, all[r].value);
+    sum_add(&total, all[r].rest);
+  }
+  mem_free(all);
+  return total.value + total.rest;
+}
+
+/* Volume fraction with valid helper nodes, a copy so that the state is left
+ * alone; 1 everywhere if there is one phase only. [ncells], caller frees. */
+static double *copy_fraction(const struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double *c = MEM_NEW(double, (size_t)mesh->ncells);
+  if (sim->c == NULL) {
+    for (int32_t i = 0; i < mesh->ncells; i++) c[i] = 1;
+    return c;
+  }
+  const struct bc *bc = sim->c->bc;
+  memcpy(c, sim->c->v, sizeof(double) * (size_t)mesh->nleaves);
+  mesh_fill(mesh, 1, &c, &bc, false);
+  return c;
+}
+
+/* Centre along axis d of what lies below the plane in a cell of width 1, seen
+ * from the centre of the cell: 1/2 - int m(s) ds / m(1/2), where m(s) is the
+ * volume at x_d < s. Simpson's rule, good to 1e-3. */
+static double centroid(const double normal[DIM], double alpha, int d) {
+  static const double weight[] = {1, 4, 2, 4, 1};
+  double lo[DIM], hi[DIM], integral = 0, volume = 0;
+  for (int k = 0; k < DIM; k++) {
+    lo[k] = -0.5;
+    hi[k] = 0.5;
+  }
+  for (int k = 1; k <= 4; k++) {
+    hi[d] = -0.5 + 0.25 * k;
+    volume = 0.25 * k * plane_box_volume(normal, alpha, lo, hi);
+    integral += weight[k] * volume / 12;
+  }
+  return volume > 0 ? 0.5 - integral / volume : 0;
+}
+
+/* g.x at the centre of the grains of a leaf. */
+static double leaf_potential(const struct mesh *mesh, const double *c,
+                             const double *gravity, int32_t i) {
+  double potential = 0, normal[DIM], stencil[NSTENCIL];
+  for (int d = 0; d < DIM; d++) potential += gravity[d] * mesh->x[i][d];
+  if (c[i] < DROPLETS_THRESHOLD || c[i] > 1 - DROPLETS_THRESHOLD)
+    return potential;
+  for (int s = 0; s < NSTENCIL; s++) stencil[s] = c[mesh->stencil[i][s]];
+  plane_normal(stencil, normal);
+  double alpha = plane_alpha(normal, c[i]);
+  for (int d = 0; d < DIM; d++)
+    if (gravity[d] != 0)
+      potential += gravity[d] * mesh->h[i] * centroid(normal, alpha, d);
+  return potential;
+}
+
+static void measure_sums(const struct simulation *sim, const double *c,
+                         struct diagnostics *diagnostics) {
+  const struct mesh *mesh = sim->mesh;
+  const double rho = sim->params->grains.density;
+  struct sum volume = {0, 0}, kinetic = {0, 0}, potential = {0, 0};
+  double fastest = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (c[i] == 0) continue;
+    double u2 = 0, v = c[i] * mesh->volume[i];
+    for (int d = 0; d < DIM; d++) u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
+    sum_add(&volume, v);
+    sum_add(&kinetic, 0.5 * rho * u2 * v);
+    sum_add(&potential,
+            -rho * v * leaf_potential(mesh, c, sim->params->gravity, i));
+    if (c[i] > 0.5) fastest = fmax(fastest, u2);
+  }
+  diagnostics->volume = sum_total(mesh, volume);
+  diagnostics->kinetic = sum_total(mesh, kinetic);
+  diagnostics->potential = sum_total(mesh, potential);
+  diagnostics->max_speed = sqrt(mesh_max(mesh, fastest));
+}
+
+void diagnostics_measure(const struct simulation *sim,
+                         struct diagnostics *diagnostics) {
+  const struct mesh *mesh = sim->mesh;
+  double *c = copy_fraction(sim);
+  bool *heap = MEM_NEW(bool, (size_t)mesh->nleaves);
+  measure_sums(sim, c, diagnostics);
+  droplets_find(mesh, c, heap, &diagnostics->droplets);
+  outline_measure(mesh, c, heap, outline_axis(sim->params->gravity),
+                  &diagnostics->outline);
+  diagnostics->height = outline_height(&diagnostics->outline);
+  diagnostics->front = outline_front(&diagnostics->outline);
+  mem_free(heap);
+  mem_free(c);
+}
+
+void diagnostics_free(struct diagnostics *diagnostics) {
+  outline_free(&diagnostics->outline);
+}

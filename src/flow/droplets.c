@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Each rank joins its own leaves to pieces. A piece is known by the global
+ * number of its first leaf. Then all ranks gather all pieces with their
+ * volumes, and the links between pieces of two ranks, and join the pieces in
+ * the same way, each for itself. */
+#include "talus/droplets.h"
+
+#include <mpi.h>
+#include <stdlib.h>
+
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/memory.h"
+#include "talus/mesh.h"
+
+struct piece {
+  double label; /* global number of the first leaf */
+  double volume;
+};
+
+struct link { /* of two pieces, by label */
+  double a, b;
+};
+
+/* Union-find: the smallest index of a set stands for it. */
+static int32_t find_root(int32_t *parent, int32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+static void join(int32_t *parent, int32_t i, int32_t j) {
+  i = find_root(parent, i);
+  j = find_root(parent, j);
+  if (i < j)
+    parent[j] = i;
+  else
+    parent[i] = j;
+}
+
+/* parent [nleaves] of the pieces of this rank, -1 where there are no grains. */
+static int32_t *join_leaves(const struct mesh *mesh, const double *c) {
+  int32_t *parent = MEM_NEW(int32_t, (size_t)mesh->nleaves);
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    parent[i] = c[i] > DROPLETS_THRESHOLD ? i : -1;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    int32_t i = mesh->face_leaf[f][0], j = mesh->face_leaf[f][1];
+    if (i < 0 || j < 0 || i >= mesh->nleaves || j >= mesh->nleaves) continue;
+    if (parent[i] >= 0 && parent[j] >= 0) join(parent, i, j);
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    if (parent[i] >= 0) parent[i] = find_root(parent, i);
+  return parent;
+}
+
+/* Pieces of this rank in order of their labels; returns how many. */
+static int list_pieces(const struct mesh *mesh, const double *c,
+                       const int32_t *parent, struct piece **pieces) {
+  double first = (double)forest_first_leaf(mesh->forest);
+  double *volume = MEM_NEW(double, (size_t)mesh->nleaves);
+  int n = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (parent[i] < 0) continue;
+    volume[parent[i]] += c[i] * mesh->volume[i];
+    n += parent[i] == i;
+  }
+  *pieces = MEM_NEW(struct piece, (size_t)n);
+  n = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    if (parent[i] == i)
+      (*pieces)[n++] = (struct piece){first + (double)i, volume[i]};
+  mem_free(volume);
+  return n;
+}
+
+static int compare_links(const void *p, const void *q) {
+  const struct link *x = p, *y = q;
+  if (x->a != y->a) return x->a < y->a ? -1 : 1;
+  return x->b < y->b ? -1 : x->b > y->b;
+}
+
+/* Links across faces between this rank and others, each once. Every such face
+ * is listed on one of its two ranks. label [nleaves + nghosts], < 0: no
+ * grains. */
+static int list_links(const struct mesh *mesh, const double *label,
+                      struct link **links) {
+  int n = 0, room = 0;
+  *links = NULL;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    int32_t i = mesh->face_leaf[f][0], j = mesh->face_leaf[f][1];
+    if (i < 0 || j < 0 || (i < mesh->nleaves && j < mesh->nleaves)) continue;
+    if (label[i] < 0 || label[j] < 0) continue;
+    if (n == room) {
+      room = 2 * room + 16;
+      *links = mem_resize(*links, (size_t)room, sizeof **links);
+    }
+    (*links)[n++] = (struct link){label[i], label[j]};
+  }
+  if (n == 0) return 0;
+  qsort(*links, (size_t)n, sizeof **links, compare_links);
+  int kept = 1;
+  for (int k = 1; k < n; k++)
+    if (compare_links(&(*links)[k], &(*links)[kept - 1]) != 0)
+      (*links)[kept++] = (*links)[k];
+  return kept;
+}
+
+/* The pairs of doubles of all ranks in rank order, instead of this rank's,
+ * which are freed; returns how many. */
+static int gather_pairs(const struct mesh *mesh, int n, void **pairs) {
+  int *count = MEM_NEW(int, (size_t)mesh->nranks);
+  int *begin = MEM_NEW(int, (size_t)mesh->nranks);
+  int mine = 2 * n, all = 0;
+  MPI_CHECK(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, mesh->comm));
+  for (int r = 0; r < mesh->nranks; r++) {
+    begin[r] = all;
+    all += count[r];
+  }
+  double *gathered = MEM_NEW(double, (size_t)all);
+  MPI_CHECK(MPI_Allgatherv(*pairs, mine, MPI_DOUBLE, gathered, count, begin,
+                           MPI_DOUBLE, mesh->comm));
+  mem_free(*pairs);
+  mem_free(count);
+  mem_free(begin);
+  *pairs = gathered;
+  return all / 2;
+}
+
+static int compare_labels(const void *p, const void *q) {
+  const struct piece *x = p, *y = q;
+  return x->label < y->label ? -1 : x->label > y->label;
+}
+
+static int32_t find_piece(int n, const struct piece *pieces, double label) {
+  struct piece key = {label, 0};
+  const struct piece *piece =
+      bsearch(&key, pieces, (size_t)n, sizeof key, compare_labels);
+  CHECK(piece != NULL, "piece %.0f is linked but not listed", label);
+  return (int32_t)(piece - pieces);
+}
+
+/* root [npieces] of the sets of all pieces. */
+static int32_t *join_pieces(int npieces, const struct piece *pieces, int nlinks,
+                            const struct link *links) {
+  int32_t *root = MEM_NEW(int32_t, (size_t)npieces);
+  for (int k = 0; k < npieces; k++) root[k] = k;
+  for (int k = 0; k < nlinks; k++)
+    join(root, find_piece(npieces, pieces, links[k].a),
+         find_piece(npieces, pieces, links[k].b));
+  for (int k = 0; k < npieces; k++) root[k] = find_root(root, k);
+  return root;
+}
+
+/* The set of the largest volume; counts the others. -1 if there is none. */
+static int32_t find_heap(int n, const struct piece *pieces, const int32_t *root,
+                         struct droplets *droplets) {
+  double *volume = MEM_NEW(double, (size_t)n), all = 0;
+  int32_t heap = n > 0 ? 0 : -1;
+  for (int k = 0; k < n; k++) volume[root[k]] += pieces[k].volume;
+  *droplets = (struct droplets){0};
+  for (int k = 0; k < n; k++) {
+    if (root[k] != k) continue;
+    if (volume[k] > volume[heap]) heap = k;
+    droplets->n++;
+  }
+  if (n > 0) droplets->n--;
+  for (int k = 0; k < n; k++)
+    if (root[k] == k && k != heap) all += volume[k];
+  droplets->volume = all;
+  mem_free(volume);
+  return heap;
+}
+
+void droplets_find(const struct mesh *mesh, const double *c, bool *heap,
+                   struct droplets *droplets) {
+  double first = (double)forest_first_leaf(mesh->forest);
+  double *label = MEM_NEW(double, (size_t)(mesh->nleaves + mesh->nghosts));
+  int32_t *parent = join_leaves(mesh, c);
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    label[i] = parent[i] < 0 ? -1 : first + (double)parent[i];
+  mesh_fill_ghosts(mesh, 1, &label);
+
+  struct piece *pieces;
+  struct link *links;
+  int npieces = list_pieces(mesh, c, parent, &pieces);
+  int nlinks = list_links(mesh, label, &links);
+  npieces = gather_pairs(mesh, npieces, (void **)&pieces);
+  nlinks = gather_pairs(mesh, nlinks, (void **)&links);
+  int32_t *root = join_pieces(npieces, pieces, nlinks, links);
+  int32_t largest = find_heap(npieces, pieces, root, droplets);
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    heap[i] =
+        label[i] >= 0 && root[find_piece(npieces, pieces, label[i])] == largest;
+  mem_free(root);
+  mem_free(links);
+  mem_free(pieces);
+  mem_free(parent);
+  mem_free(label);
+}

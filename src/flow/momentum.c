@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/momentum.h"
+
+#include <math.h>
+
+#include "talus/vof.h"
+
+void momentum_mark_band(const struct mesh *mesh, const double *c,
+                        double *band) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double low = 1, high = 0;
+    for (int s = 0; s < NSTENCIL; s++) {
+      low = fmin(low, c[mesh->stencil[i][s]]);
+      high = fmax(high, c[mesh->stencil[i][s]]);
+    }
+    band[i] = high > VOF_EMPTY && low < 1 - VOF_EMPTY;
+  }
+  mesh_fill_ghosts(mesh, 1, &band);
+}
+
+static double minmod(double a, double b) {
+  if (a * b <= 0) return 0;
+  return fabs(a) < fabs(b) ? a : b;
+}
+
+/* Limited differences of u_e along d, per leaf edge; none in cut leaves. */
+static void limited_slopes(const struct mesh *mesh, int d, const double *c,
+                           double *const u[DIM], double *const slope[DIM]) {
+  const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t *node = mesh->stencil[i];
+    const bool cut = vof_is_cut(c[i]);
+    for (int e = 0; e < DIM; e++) {
+      const double left = u[e][i] - u[e][node[lower]];
+      const double right = u[e][node[upper]] - u[e][i];
+      slope[e][i] = cut ? 0 : minmod(left, right);
+    }
+  }
+  mesh_fill_ghosts(mesh, DIM, slope);
+}
+
+void momentum_flux(const struct mesh *mesh, int d, double dt,
+                   const double density[2], const double *u_f,
+                   const double *c, const double *flux, const double *band, double *const u[DIM],
+                   struct momentum_flux *out) {
+  limited_slopes(mesh, d, c, u, out->slope);
+  for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+    out->mass[f] = 0;
+    for (int e = 0; e < DIM; e++) out->carried[e][f] = 0;
+    if (!momentum_face_in_band(mesh, band, f)) continue;
+    const double mass = density[0] * flux[f] + density[1] * (u_f[f] - flux[f]);
+    const int upwind = u_f[f] > 0 ? 0 : 1;
+    const int32_t node = mesh->face_node[f][upwind];
+    const int32_t leaf = mesh->face_leaf[f][upwind];
+    out->mass[f] = mass;
+    for (int e = 0; e < DIM; e++) {
+      double value = u[e][node];
+      if (leaf < 0) { /* at the boundary itself */
+        value = 0.5 * (value + u[e][mesh->face_node[f][1 - upwind]]);
+      } else {
+        const double reach = 1 - fabs(u_f[f]) * dt / mesh->face_h[f];
+        const double half = 0.5 * mesh->face_h[f] / mesh->h[leaf] * reach;
+        value += (upwind ? -half : half) * out->slope[e][leaf];
+      }
+      out->carried[e][f] = mass * value;
+    }
+  }
+  double *v[DIM + 1] = {out->mass};
+  for (int e = 0; e < DIM; e++) v[e + 1] = out->carried[e];
+  mesh_fill_faces(mesh, DIM + 1, v);
+}
+
+void momentum_update(const struct mesh *mesh, int d, double dt,
+                     const double density[2], const double *u_f,
+                     const double *c_old, const double *cc,
+                     const double *band, const struct momentum_flux *flux,
+                     double *const u[DIM]) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t lower = mesh->cell_face[i][2 * d];
+    const int32_t upper = mesh->cell_face[i][2 * d + 1];
+    const double k = dt / mesh->h[i];
+    const double rho_old = density[1] + c_old[i] * (density[0] - density[1]);
+    const double net_mass = flux->mass[upper] - flux->mass[lower];
+    if (band[i] > 0) {
+      const double rho_cc = cc[i] > 0 ? density[0] : density[1];
+      const double own = rho_old + rho_cc * k * (u_f[upper] - u_f[lower]);
+      const double rho = own - k * net_mass;
+      for (int e = 0; e < DIM; e++) {
+        const double *carried = flux->carried[e];
+        u[e][i] = (own * u[e][i] - k * (carried[upper] - carried[lower])) / rho;
+      }
+    } else if (flux->mass[upper] != 0 || flux->mass[lower] != 0) {
+      for (int e = 0; e < DIM; e++) {
+        const double *carried = flux->carried[e];
+        u[e][i] -= k / rho_old *
+                   (carried[upper] - carried[lower] - net_mass * u[e][i]);
+      }
+    }
+  }
+}

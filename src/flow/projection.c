@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/projection.h"
+
+#include "talus/poisson.h"
+
+struct solve_stats projection_project(const struct projection *projection,
+                                      double dt, double *u_f, double *p) {
+  const struct mesh *mesh = projection->mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t *face = mesh->cell_face[i];
+    double div = 0;
+    for (int d = 0; d < DIM; d++) {
+      div += u_f[face[2 * d + 1]] - u_f[face[2 * d]];
+    }
+    projection->rhs[i] = div / (mesh->h[i] * dt);
+  }
+  struct solve_stats stats = poisson_solve(
+      mesh, projection->hierarchy, projection->alpha_f, projection->rhs,
+      projection->bc, projection->tolerance / (dt * dt),
+      projection->max_iterations, p);
+  poisson_flux(mesh, projection->alpha_f, p, projection->flux);
+  for (int32_t f = 0; f < mesh->nfaces_all; f++) {
+    u_f[f] -= dt * projection->flux[f];
+  }
+  stats.residual_before *= dt * dt;
+  stats.residual_after *= dt * dt;
+  return stats;
+}
+
+void projection_face_velocity(const struct projection *projection, double dt,
+                              double *const u[DIM], double *u_f) {
+  const struct mesh *mesh = projection->mesh;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      const double lower = projection->rho[node[0]];
+      const double upper = projection->rho[node[1]];
+      u_f[f] =
+          (lower * u[d][node[0]] + upper * u[d][node[1]]) / (lower + upper);
+      u_f[f] += dt * projection->gravity_f[f];
+    }
+  }
+  mesh_fill_faces(mesh, 1, &u_f);
+}
+
+void projection_acceleration(const struct projection *projection, double *face,
+                             double *const g[DIM]) {
+  const struct mesh *mesh = projection->mesh;
+  for (int32_t f = 0; f < mesh->nfaces_all; f++) {
+    face[f] = projection->gravity_f[f] - projection->flux[f];
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int d = 0; d < DIM; d++) {
+      g[d][i] = 0.5 * (face[mesh->cell_face[i][2 * d]] +
+                       face[mesh->cell_face[i][2 * d + 1]]);
+    }
+  }
+}

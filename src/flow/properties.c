@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/properties.h"
+
+#include <math.h>
+
+#include "talus/params.h"
+#include "talus/plane.h"
+#include "talus/vof.h"
+
+static inline double unit_range(double c) { return fmin(fmax(c, 0), 1); }
+
+static inline double face_fraction(const struct mesh *mesh, const double *c,
+                                   int32_t f) {
+  const int32_t *node = mesh->face_node[f];
+  return 0.5 * (unit_range(c[node[0]]) + unit_range(c[node[1]]));
+}
+
+void properties_density(const struct mesh *mesh, const double density[2],
+                        const double *c, const bool *closed, double *rho,
+                        double *alpha_f) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    rho[i] = density[1] + unit_range(c[i]) * (density[0] - density[1]);
+  }
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int patch = mesh->face_patch[f];
+    const double c_f = face_fraction(mesh, c, f);
+    alpha_f[f] = patch >= 0 && closed[patch]
+                     ? 0
+                     : 1 / (density[1] + c_f * (density[0] - density[1]));
+  }
+  mesh_fill_faces(mesh, 1, &alpha_f);
+}
+
+/* g.(x_f - x_S) with the surface in one leaf of the face. */
+static double drop_to_surface(const struct mesh *mesh, int d, int32_t f,
+                              int side, const double gravity[DIM],
+                              double *const normal[DIM], const double *plane) {
+  const int32_t leaf = mesh->face_leaf[f][side];
+  const int32_t node = mesh->face_node[f][side];
+  const bool coarse = node >= mesh->begin_virtual;
+  double n[DIM], centroid[DIM], drop = 0;
+  for (int e = 0; e < DIM; e++) n[e] = normal[e][leaf];
+  plane_centroid(n, plane[leaf], centroid);
+  for (int e = 0; e < DIM; e++) {
+    double face = e == d ? (side ? -0.5 : 0.5) : 0;
+    if (coarse && e != d) {
+      face = (node - mesh->begin_virtual) % NCHILD >> e & 1 ? 0.25 : -0.25;
+    }
+    drop += gravity[e] * (face - centroid[e]) * mesh->h[leaf];
+  }
+  return drop;
+}
+
+void properties_gravity(const struct mesh *mesh, const double density[2],
+                        const double gravity[DIM], const double *c,
+                        double *const normal[DIM], const double *plane,
+                        const double *alpha_f, double *gravity_f) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f], *leaf = mesh->face_leaf[f];
+      const double jump = unit_range(c[node[1]]) - unit_range(c[node[0]]);
+      gravity_f[f] = alpha_f[f] > 0 ? gravity[d] : 0;
+      if (jump == 0 || mesh->face_patch[f] >= 0) continue;
+      double drop = 0;
+      int surfaces = 0;
+      for (int side = 0; side < 2; side++) {
+        if (!vof_is_cut(c[leaf[side]])) continue;
+        drop += drop_to_surface(mesh, d, f, side, gravity, normal, plane);
+        surfaces++;
+      }
+      if (surfaces == 0) continue; /* the surface is the face */
+      gravity_f[f] += alpha_f[f] * (density[0] - density[1]) * jump /
+                      mesh->face_h[f] * drop / surfaces;
+    }
+  }
+  mesh_fill_faces(mesh, 1, &gravity_f);
+}
+
+/* Part of the line from the node on `side` of a face to the face that lies
+ * in the grains, by the plane of the leaf there; the node is the leaf itself
+ * or one of its children. */
+static double line_fraction(const struct mesh *mesh, int d, int32_t f,
+                            int side, const double *c,
+                            double *const normal[DIM], const double *plane) {
+  const int32_t leaf = mesh->face_leaf[f][side];
+  const int32_t node = mesh->face_node[f][side];
+  if (!vof_is_cut(c[leaf])) return unit_range(c[leaf]);
+  const bool coarse = node >= mesh->begin_virtual;
+  double at_node = -plane[leaf];
+  for (int e = 0; e < DIM && coarse; e++) {
+    const int upper = (node - mesh->begin_virtual) % NCHILD >> e & 1;
+    at_node += normal[e][leaf] * (upper ? 0.25 : -0.25);
+  }
+  const double reach = (side ? -0.5 : 0.5) * (coarse ? 0.5 : 1);
+  const double at_face = at_node + reach * normal[d][leaf];
+  if (at_node <= 0 && at_face <= 0) return 1;
+  if (at_node > 0 && at_face > 0) return 0;
+  return (at_node <= 0 ? -at_node : -at_face) / fabs(at_node - at_face);
+}
+
+/* Both halves of the line of a face; one across a boundary mirrors the
+ * other. */
+static void line_halves(const struct mesh *mesh, int d, int32_t f,
+                        const double *c, double *const normal[DIM],
+                        const double *plane, double half[2]) {
+  const int32_t *leaf = mesh->face_leaf[f];
+  for (int side = 0; side < 2; side++) {
+    if (leaf[side] >= 0) {
+      half[side] = line_fraction(mesh, d, f, side, c, normal, plane);
+    }
+  }
+  if (leaf[0] < 0) half[0] = half[1];
+  if (leaf[1] < 0) half[1] = half[0];
+}
+
+/* 2 D:D at face f of axis d from the stencil of its owner. */
+static double face_shear_squared(const struct mesh *mesh, int d, int32_t f,
+                                 double *const u[DIM]) {
+  const int32_t *node = mesh->face_node[f];
+  const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
+  const int other =
+      stencil_face(2 * d + (node[0] == mesh->face_owner[f] ? 1 : 0));
+  const double k = 1 / mesh->face_h[f];
+  double grad[DIM][DIM]; /* grad[e][t] = du_e/dx_t */
+  for (int e = 0; e < DIM; e++) {
+    for (int t = 0; t < DIM; t++) {
+      const int step = stencil_step(t);
+      grad[e][t] = t == d ? k * (u[e][node[1]] - u[e][node[0]])
+                          : 0.25 * k *
+                                (u[e][stencil[STENCIL_CENTRE + step]] -
+                                 u[e][stencil[STENCIL_CENTRE - step]] +
+                                 u[e][stencil[other + step]] -
+                                 u[e][stencil[other - step]]);
+    }
+  }
+  double sum = 0;
+  for (int e = 0; e < DIM; e++) {
+    sum += 2 * grad[e][e] * grad[e][e];
+    for (int t = e + 1; t < DIM; t++) {
+      const double shear = grad[e][t] + grad[t][e];
+      sum += shear * shear;
+    }
+  }
+  return sum;
+}
+
+void properties_shear_rate(const struct mesh *mesh, double *const u[DIM],
+                           double *shear_f) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      shear_f[f] = sqrt(face_shear_squared(mesh, d, f, u));
+    }
+  }
+}
+
+/* theta_f, p_f [nfaces]: part of each face's line in the grains, and the
+ * pressure at the face. */
+static void face_pressure(const struct mesh *mesh, const double density[2],
+                          const double gravity[DIM], const double *c,
+                          double *const normal[DIM], const double *plane,
+                          const double *p, const bool *closed, double *theta_f,
+                          double *p_f) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      const int patch = mesh->face_patch[f];
+      double half[2] = {0}, rho[2];
+      line_halves(mesh, d, f, c, normal, plane, half);
+      for (int side = 0; side < 2; side++) {
+        rho[side] = density[1] + half[side] * (density[0] - density[1]);
+      }
+      theta_f[f] = 0.5 * (half[0] + half[1]);
+      p_f[f] = (rho[1] * p[node[0]] + rho[0] * p[node[1]]) / (rho[0] + rho[1]);
+      if (patch >= 0 && closed[patch]) {
+        const int32_t i = mesh->face_owner[f];
+        const double out = node[0] == i ? 0.5 : -0.5;
+        p_f[f] = p[i] + out * mesh->h[i] * rho[0] * gravity[d];
+      }
+    }
+  }
+}
+
+/* eta_f of the grains mixed with that of the gas. */
+static void mix_viscosity(const struct mesh *mesh, const struct rheology *gas,
+                          const double *theta_f, const double *shear_f,
+                          const double *p_f, double *eta_f) {
+  enum { BLOCK = 512 };
+  double eta_gas[BLOCK];
+  for (int32_t begin = 0; begin < mesh->nfaces; begin += BLOCK) {
+    const int32_t n =
+        begin + BLOCK < mesh->nfaces ? BLOCK : mesh->nfaces - begin;
+    rheology_eval(gas, n, shear_f + begin, p_f + begin, eta_gas);
+    for (int32_t k = 0; k < n; k++) {
+      const double theta = theta_f[begin + k];
+      const double mixed =
+          1 / (theta / eta_f[begin + k] + (1 - theta) / eta_gas[k]);
+      eta_f[begin + k] = theta < PROPERTIES_GAS ? eta_gas[k] : mixed;
+    }
+  }
+}
+
+void properties_viscosity(const struct mesh *mesh, const struct phase *grains,
+                          const struct phase *gas, const double gravity[DIM],
+                          const double *c, double *const normal[DIM],
+                          const double *plane, const double *p,
+                          const bool *closed, const double *shear_f,
+                          double *const work[2], double *eta_f) {
+  double *theta_f = work[0], *p_f = work[1];
+  const double density[2] = {grains->density,
+                             gas ? gas->density : grains->density};
+  face_pressure(mesh, density, gravity, c, normal, plane, p, closed, theta_f,
+                p_f);
+  rheology_eval(&grains->rheology, mesh->nfaces, shear_f, p_f, eta_f);
+  if (gas) mix_viscosity(mesh, &gas->rheology, theta_f, shear_f, p_f, eta_f);
+  mesh_fill_faces(mesh, 1, &eta_f);
+}

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/simulation.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/adapt.h"
+#include "talus/clean.h"
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/hierarchy.h"
+#include "talus/memory.h"
+#include "talus/shapes.h"
+#include "talus/step.h"
+
+/* Patches of the mesh: one per side, then one per further boundary of the
+ * case and axis it lies across (slip needs to know its normal). */
+enum { SIDES = 6 };
+static int patch_of(int boundary, int axis) {
+  return SIDES + (boundary - SIDES) * DIM + axis;
+}
+
+static int patch_at(void *context, int side, const double x[3]) {
+  const struct params *params = context;
+  int boundary =
+      params->boundary_select
+          ? params->boundary_select(params->boundary_context, side, x)
+          : side;
+  CHECK(
+      boundary == side || (boundary >= SIDES && boundary < params->nboundaries),
+      "boundary %d chosen on side %d", boundary, side);
+  return boundary < SIDES ? side : patch_of(boundary, side / 2);
+}
+
+void simulation_layout(const struct params *params,
+                       struct forest_layout *layout) {
+  memset(layout, 0, sizeof *layout);
+  layout->size = params->size;
+  for (int d = 0; d < DIM; d++) {
+    layout->origin[d] = params->origin[d];
+    layout->trees[d] = params->trees[d];
+    layout->periodic[d] = params->boundary[2 * d].type == BOUNDARY_PERIODIC;
+  }
+  layout->patch = patch_at;
+  layout->patch_context = (void *)params;
+}
+
+/* Conditions of one boundary, on a patch across `axis`. */
+static void set_patch(struct simulation *sim, int patch, int axis,
+                      const struct boundary *boundary) {
+  CHECK(patch < MESH_MAX_PATCHES, "more than %d boundary patches",
+        MESH_MAX_PATCHES);
+  const bool open = boundary->type == BOUNDARY_OUTFLOW;
+  sim->open[patch] = open;
+  sim->closed[patch] = !open;
+  for (int e = 0; e < DIM; e++) {
+    struct bc *bc = &sim->u[e]->bc[patch];
+    bc->value = boundary->velocity[e];
+    if (open) {
+      *bc = (struct bc){BC_NEUMANN, 0, 0};
+    } else if (boundary->type == BOUNDARY_SLIP ||
+               boundary->type == BOUNDARY_NAVIER) {
+      if (e == axis) {
+        *bc = (struct bc){BC_DIRICHLET, 0, 0};
+      } else if (boundary->type == BOUNDARY_NAVIER) {
+        bc->type = BC_ROBIN, bc->length = boundary->slip_length;
+      } else {
+        *bc = (struct bc){BC_NEUMANN, 0, 0};
+      }
+    } else {
+      bc->type = BC_DIRICHLET;
+    }
+    sim->u_old[e]->bc[patch] = *bc;
+  }
+  if (open) {
+    sim->p->bc[patch] = (struct bc){BC_DIRICHLET, boundary->pressure, 0};
+  }
+  if (boundary->type == BOUNDARY_INFLOW) {
+    sim->c->bc[patch] = (struct bc){BC_DIRICHLET, boundary->fraction, 0};
+  }
+}
+
+static void set_boundaries(struct simulation *sim) {
+  const struct params *params = sim->params;
+  for (int side = 0; side < NFACE; side++) {
+    set_patch(sim, side, side / 2, &params->boundary[side]);
+  }
+  for (int b = SIDES; b < params->nboundaries; b++) {
+    for (int axis = 0; axis < DIM; axis++) {
+      set_patch(sim, patch_of(b, axis), axis, &params->boundary[b]);
+    }
+  }
+}
+
+static struct field *add_cell(struct simulation *sim, const char *name,
+                              const char *unit, const char *title,
+                              enum field_remap remap, bool output) {
+  struct field *field =
+      fields_add(&sim->fields, sim->mesh, name, unit, title, FIELD_CELL, remap);
+  field->output = output;
+  field->restart = remap != REMAP_NONE;
+  return field;
+}
+
+static void add_state(struct simulation *sim) {
+  static const char *const velocity[] = {"velocity_x", "velocity_y",
+                                         "velocity_z"};
+  static const char *const force[] = {"acceleration_x", "acceleration_y",
+                                      "acceleration_z"};
+  sim->c = add_cell(sim, "fraction", "1", "volume fraction of grains",
+                    REMAP_VOF, true);
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    sim->tracer[k] = add_cell(sim, sim->params->tracer[k].name, "1",
+                              "passive tracer", REMAP_VOF, true);
+  }
+  for (int d = 0; d < DIM; d++) {
+    sim->u[d] =
+        add_cell(sim, velocity[d], "m/s", "velocity", REMAP_MOMENTUM, true);
+    sim->u[d]->component = d;
+    sim->g[d] = add_cell(sim, force[d], "m/s^2",
+                         "gravity less pressure gradient over density",
+                         REMAP_AVERAGE, false);
+  }
+  sim->p = add_cell(sim, "pressure", "Pa", "pressure", REMAP_LINEAR, true);
+  sim->u_f = fields_add(&sim->fields, sim->mesh, "face_velocity", "m/s",
+                        "normal velocity at faces", FIELD_FACE, REMAP_FACE);
+  sim->u_f->restart = true;
+}
+
+static struct field *add_face(struct simulation *sim, const char *name) {
+  return fields_add(&sim->fields, sim->mesh, name, "", "", FIELD_FACE,
+                    REMAP_NONE);
+}
+
+static void add_scratch(struct simulation *sim) {
+  static const char *const normal[] = {"normal_x", "normal_y", "normal_z"};
+  static const char *const old[] = {"old_x", "old_y", "old_z"};
+  static const char *const cell[] = {"cell_0", "cell_1", "cell_2",
+                                     "cell_3", "cell_4", "cell_5"};
+  static const char *const face[] = {"face_0", "face_1", "face_2", "face_3",
+                                     "face_4"};
+  sim->rho = add_cell(sim, "density", "kg/m^3", "density", REMAP_NONE, false);
+  sim->eta = add_cell(sim, "viscosity", "Pa s", "viscosity, mean of the faces",
+                      REMAP_NONE, true);
+  sim->frozen = add_cell(sim, "frozen", "1", "", REMAP_NONE, false);
+  sim->plane = add_cell(sim, "plane", "1", "", REMAP_NONE, false);
+  sim->band = add_cell(sim, "band", "1", "", REMAP_NONE, false);
+  sim->c_old = add_cell(sim, "c_old", "1", "", REMAP_NONE, false);
+  for (int d = 0; d < DIM; d++) {
+    sim->normal[d] = add_cell(sim, normal[d], "1", "", REMAP_NONE, false);
+    sim->u_old[d] = add_cell(sim, old[d], "m/s", "", REMAP_NONE, false);
+  }
+  for (int k = 0; k < 2 * DIM; k++) {
+    sim->cell[k] = add_cell(sim, cell[k], "", "", REMAP_NONE, false);
+  }
+  sim->eta_f = add_face(sim, "face_viscosity");
+  sim->alpha_f = add_face(sim, "face_specific_volume");
+  sim->gravity_f = add_face(sim, "face_gravity");
+  sim->u_half = add_face(sim, "face_half");
+  for (int k = 0; k < DIM + 2; k++) sim->face[k] = add_face(sim, face[k]);
+}
+
+void simulation_remesh(struct simulation *sim) {
+  clean_destroy(sim->clean);
+  hierarchy_destroy(sim->hierarchy);
+  mesh_destroy(sim->mesh);
+  sim->mesh = mesh_new(sim->forest);
+  sim->hierarchy = hierarchy_new(sim->mesh);
+  sim->clean = clean_new(sim->mesh);
+  fields_reset(&sim->fields, sim->mesh);
+}
+
+struct simulation *simulation_new_on(const struct params *params,
+                                     struct forest *forest) {
+  struct simulation *sim = MEM_NEW(struct simulation, 1);
+  sim->params = params;
+  sim->forest = forest;
+  simulation_remesh(sim);
+  add_state(sim);
+  add_scratch(sim);
+  set_boundaries(sim);
+  return sim;
+}
+
+void simulation_destroy(struct simulation *sim) {
+  if (!sim) return;
+  fields_destroy(&sim->fields);
+  clean_destroy(sim->clean);
+  hierarchy_destroy(sim->hierarchy);
+  mesh_destroy(sim->mesh);
+  forest_destroy(sim->forest);
+  mem_free(sim);
+}
+
+/* Fractions of a shape. Coarse leaves are divided more often, so that what
+ * the finest grid would see is not missed. */
+static void fill_shape(const struct simulation *sim,
+                       const struct function *shape, struct field *field) {
+  enum { DEEPEST = 6, SURFACE = 3 };
+  const struct mesh *mesh = sim->mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    int depth = sim->params->level_max - mesh->level[i] + SURFACE;
+    if (depth > DEEPEST) depth = DEEPEST;
+    field->v[i] = shape->eval ? shape_fraction(shape->eval, shape->context,
+                                               mesh->x[i], mesh->h[i], depth)
+                              : 1;
+  }
+}
+
+static void fill_state(struct simulation *sim) {
+  const struct params *params = sim->params;
+  const struct mesh *mesh = sim->mesh;
+  fill_shape(sim, &params->shape, sim->c);
+  for (int k = 0; k < params->ntracers; k++) {
+    fill_shape(sim, &params->tracer[k].shape, sim->tracer[k]);
+  }
+  for (int d = 0; d < DIM; d++) {
+    const struct function *function = &params->velocity[d];
+    if (!function->eval) continue;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      double x[3] = {0};
+      for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
+      sim->u[d]->v[i] = function->eval(function->context, x);
+    }
+  }
+}
+
+/* Normal velocity at the centres of the faces. */
+static void fill_face_velocity(struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  field_fill_many(mesh, DIM, sim->u);
+  for (int d = 0; d < DIM; d++) {
+    const struct function *function = &sim->params->velocity[d];
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t i = mesh->face_owner[f];
+      const int patch = mesh->face_patch[f];
+      const double *u = sim->u[d]->v;
+      const int32_t *node = mesh->face_node[f];
+      sim->u_f->v[f] = 0.5 * (u[node[0]] + u[node[1]]);
+      if (!function->eval || (patch >= 0 && sim->closed[patch])) continue;
+      double x[3] = {0};
+      for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
+      x[d] += 0.5 * mesh->h[i] * (node[0] == i ? 1 : -1);
+      sim->u_f->v[f] = function->eval(function->context, x);
+    }
+  }
+  clean_face_velocity(sim->clean, mesh, sim->open, sim->u_f->v);
+}
+
+struct simulation *simulation_new(const struct params *params) {
+  struct forest_layout layout;
+  simulation_layout(params, &layout);
+  const int level =
+      params->ncriteria > 0 ? params->level_min : params->level_max;
+  struct simulation *sim =
+      simulation_new_on(params, forest_new(MPI_COMM_WORLD, &layout, level));
+  fill_state(sim);
+  for (int k = 0; k <= 2 * params->level_max && params->ncriteria > 0; k++) {
+    if (!adapt_grid(sim)) break;
+    fill_state(sim);
+  }
+  fill_face_velocity(sim);
+  sim->pressure = step_static_pressure(sim);
+  return sim;
+}

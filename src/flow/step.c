@@ -1,0 +1,420 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The time step of the two-phase incompressible model: step_advance is the
+ * table of contents of the scheme, each call one stage of it.
+ *
+ * Invariants, between steps
+ * 1. c, tracers, u, u_f, p, g are valid on leaves (u_f on all faces); ghosts
+ *    and helper nodes of cell fields are not: every stage fills what it reads.
+ * 2. u_f is divergence-free to the tolerance of the projection; cleaning, the
+ *    first stage of a step, makes it so to round-off.
+ */
+#include "talus/step.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/adapt.h"
+#include "talus/advection.h"
+#include "talus/clean.h"
+#include "talus/error.h"
+#include "talus/log.h"
+#include "talus/momentum.h"
+#include "talus/projection.h"
+#include "talus/properties.h"
+#include "talus/simulation.h"
+#include "talus/viscous.h"
+#include "talus/vof.h"
+
+/* From one step to the next dt grows by at most this factor. */
+#define DT_GROWTH 1.2
+#define DT_ACCELERATION 0.1
+/* A step that makes up for a last one too long is at least this part of the
+ * bound. */
+#define DT_SHRINK 0.2
+
+static void velocities(struct field *const field[DIM], double *v[DIM]) {
+  for (int d = 0; d < DIM; d++) v[d] = field[d]->v;
+}
+
+static void densities(const struct simulation *sim, double density[2]) {
+  density[0] = sim->params->grains.density;
+  density[1] =
+      sim->params->single_phase ? density[0] : sim->params->gas.density;
+}
+
+static struct projection projection_of(struct simulation *sim) {
+  return (struct projection){.mesh = sim->mesh,
+                             .hierarchy = sim->hierarchy,
+                             .rho = sim->rho->v,
+                             .alpha_f = sim->alpha_f->v,
+                             .gravity_f = sim->gravity_f->v,
+                             .bc = sim->p->bc,
+                             .tolerance = sim->params->tolerance_pressure,
+                             .max_iterations = sim->params->max_iterations,
+                             .rhs = sim->cell[0]->v,
+                             .flux = sim->face[0]->v};
+}
+
+/* Largest dt with 1/2 sum |u_f| A dt / V <= cfl in every cell, gas included,
+ * as VOF wants it. */
+static double cfl_bound(const struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double rate = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double sum = 0;
+    for (int f = 0; f < NFACE; f++) {
+      sum += fabs(sim->u_f->v[mesh->cell_face[i][f]]);
+    }
+    rate = fmax(rate, 0.5 * sum / mesh->h[i]);
+  }
+  rate = mesh_max(mesh, rate);
+  return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
+}
+
+/* A part of the dt in which the acceleration g moves a cell of grains by its
+ * size: the viscosity is that of the last strain rate, and lags behind while
+ * a flow sets off. */
+static double acceleration_bound(const struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int d = 0; d < DIM && sim->c->v[i] > 0.5; d++) {
+      most = fmax(most, fabs(sim->g[d]->v[i]) / mesh->h[i]);
+    }
+  }
+  most = mesh_max(mesh, most);
+  return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;
+}
+
+/* Stage 1: dt of the step, and dt_c that takes c from t^{n-1/2} to t^{n+1/2}:
+ * the mean of the last dt (0 at the start) and this one, which is chosen so
+ * that both keep to the bound. */
+static double choose_dt(const struct simulation *sim, double dt_max,
+                        double *dt_c) {
+  const double bound = cfl_bound(sim);
+  double dt = fmin(fmin(dt_max, sim->params->dt_max),
+                   fmin(bound, acceleration_bound(sim)));
+  if (sim->dt > 0) {
+    dt = fmin(dt, DT_GROWTH * sim->dt);
+    dt = fmin(dt, fmax(2 * bound - sim->dt, DT_SHRINK * bound));
+  }
+  *dt_c = fmin(0.5 * (sim->dt + dt), bound);
+  return dt;
+}
+
+/* Stage 3: c, tracers and the momentum near the interface, axis by axis, in
+ * an order that alternates from step to step. */
+static void sweep_tracer(struct simulation *sim, int d, double dt,
+                         const double *u_f, struct field *tracer) {
+  const struct mesh *mesh = sim->mesh;
+  double *normal[DIM];
+  velocities(sim->normal, normal);
+  field_fill(mesh, tracer);
+  vof_reconstruct(mesh, tracer->v, normal, sim->plane->v);
+  vof_flux(mesh, d, dt, u_f, tracer->v, normal, sim->plane->v,
+           sim->face[0]->v);
+  vof_update(mesh, d, dt, u_f, sim->face[0]->v, sim->frozen->v, tracer->v);
+}
+
+static void advance_tracer(struct simulation *sim, double dt,
+                           const double *u_f, struct field *tracer) {
+  vof_freeze(sim->mesh, tracer->v, sim->frozen->v);
+  for (int s = 0; s < DIM; s++) {
+    sweep_tracer(sim, (int)((sim->step + s) % DIM), dt, u_f, tracer);
+  }
+}
+
+static void sweep_grains(struct simulation *sim, int d, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double density[2], *u[DIM];
+  struct momentum_flux flux = {.mass = sim->face[1]->v};
+  densities(sim, density);
+  velocities(sim->u, u);
+  for (int e = 0; e < DIM; e++) {
+    flux.carried[e] = sim->face[2 + e]->v;
+    flux.slope[e] = sim->cell[e]->v;
+  }
+  memcpy(sim->c_old->v, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  field_fill_many(mesh, DIM, sim->u);
+  sweep_tracer(sim, d, dt, sim->u_f->v, sim->c);
+  momentum_flux(mesh, d, dt, density, sim->u_f->v, sim->c_old->v,
+                sim->face[0]->v, sim->band->v, u, &flux);
+  momentum_update(mesh, d, dt, density, sim->u_f->v, sim->c_old->v,
+                  sim->frozen->v, sim->band->v, &flux, u);
+}
+
+static void log_divergence(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double sum = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double net = 0;
+    for (int f = 0; f < NFACE; f++) {
+      net += (f & 1 ? 1 : -1) * sim->u_f->v[mesh->cell_face[i][f]];
+    }
+    sum += sim->frozen->v[i] * net * dt * mesh->volume[i] / mesh->h[i];
+  }
+  sim->divergence_volume += mesh_sum(mesh, sum);
+}
+
+static void advance_fractions(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  for (int e = 0; e < DIM; e++) {
+    memcpy(sim->u_old[e]->v, sim->u[e]->v,
+           (size_t)mesh->nleaves * sizeof(double));
+  }
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    advance_tracer(sim, dt, sim->u_f->v, sim->tracer[k]);
+  }
+  if (sim->params->single_phase) return;
+  field_fill(mesh, sim->c);
+  momentum_mark_band(mesh, sim->c->v, sim->band->v);
+  vof_freeze(mesh, sim->c->v, sim->frozen->v);
+  for (int s = 0; s < DIM; s++) {
+    sweep_grains(sim, (int)((sim->step + s) % DIM), dt);
+  }
+  log_divergence(sim, dt);
+}
+
+/* Stage 4: density, gravity and viscosity from c^{n+1/2}, D^n, p^{n-1/2}. */
+static void update_density(struct simulation *sim) {
+  double density[2], *normal[DIM];
+  densities(sim, density);
+  velocities(sim->normal, normal);
+  field_fill(sim->mesh, sim->c);
+  vof_reconstruct(sim->mesh, sim->c->v, normal, sim->plane->v);
+  properties_density(sim->mesh, density, sim->c->v, sim->closed, sim->rho->v,
+                     sim->alpha_f->v);
+  properties_gravity(sim->mesh, density, sim->params->gravity, sim->c->v,
+                     normal, sim->plane->v, sim->alpha_f->v, sim->gravity_f->v);
+  field_fill(sim->mesh, sim->rho);
+}
+
+/* Viscous work on the grains over dt, from eta and the strain rate. */
+static void add_dissipation(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double *heat = sim->face[0]->v, sum = 0;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    heat[f] *= heat[f] * sim->eta_f->v[f];
+  }
+  mesh_fill_faces(mesh, 1, &heat);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double mean = 0;
+    for (int f = 0; f < NFACE; f++) mean += heat[mesh->cell_face[i][f]] / NFACE;
+    sum += sim->c->v[i] * mean * mesh->volume[i];
+  }
+  sim->energy.dissipated += dt * mesh_sum(mesh, sum);
+}
+
+static void update_viscosity(struct simulation *sim,
+                             struct field *const velocity[DIM]) {
+  const struct mesh *mesh = sim->mesh;
+  const struct params *params = sim->params;
+  double *u[DIM], *normal[DIM];
+  velocities(velocity, u), velocities(sim->normal, normal);
+  field_fill_many(mesh, DIM, velocity);
+  field_fill(mesh, sim->p);
+  properties_shear_rate(mesh, u, sim->face[0]->v);
+  double *work[2] = {sim->face[1]->v, sim->face[2]->v};
+  properties_viscosity(mesh, &params->grains,
+                       params->single_phase ? NULL : &params->gas,
+                       params->gravity, sim->c->v, normal, sim->plane->v,
+                       sim->p->v, sim->closed, sim->face[0]->v, work,
+                       sim->eta_f->v);
+}
+
+/* Stage 5: u_f at half steps, made exactly solenoidal, carries momentum away
+ * from the interface. */
+static void advect_momentum(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double *u[DIM], *g[DIM], *out[DIM];
+  velocities(sim->u_old, u), velocities(sim->g, g), velocities(sim->u, out);
+  struct advection_work work = {.volume = sim->face[1]->v};
+  for (int e = 0; e < DIM; e++) {
+    work.slope[e] = sim->cell[e]->v;
+    work.transverse[e] = sim->cell[DIM + e]->v;
+    work.flux[e] = sim->face[2 + e]->v;
+  }
+  field_fill_many(mesh, DIM, sim->g);
+  advection_predict(mesh, dt, u, g, sim->closed, &work, sim->u_half->v);
+  struct projection projection = projection_of(sim);
+  struct field *phi = sim->frozen; /* the small pressure of this half step */
+  struct bc bc[MESH_MAX_PATCHES];
+  memcpy(bc, sim->p->bc, sizeof bc);
+  for (int k = 0; k < MESH_MAX_PATCHES; k++) bc[k].value = 0;
+  projection.bc = bc;
+  memset(phi->v, 0, (size_t)mesh->ncells * sizeof(double));
+  sim->predictor =
+      projection_project(&projection, 0.5 * dt, sim->u_half->v, phi->v);
+  clean_face_velocity(sim->clean, mesh, sim->open, sim->u_half->v);
+  advection_momentum(mesh, dt, u, g, sim->u_half->v,
+                     sim->params->single_phase ? NULL : sim->band->v, &work,
+                     out);
+}
+
+/* Stage 6: rho u* - theta dt div(2 eta D(u*)) = rho (u + dt g)
+ * + (1 - theta) dt div(2 eta D(u^n)); g then leaves u* again, the projection
+ * brings the new one. */
+static void viscous_rhs(struct simulation *sim, double dt,
+                        double *const rhs[DIM]) {
+  const struct mesh *mesh = sim->mesh;
+  const double theta = sim->params->theta;
+  if (theta < 1) {
+    double *u[DIM];
+    velocities(sim->u_old, u);
+    viscous_force(mesh, sim->eta_f->v, u, rhs);
+  }
+  for (int e = 0; e < DIM; e++) {
+    const double *u = sim->u[e]->v, *g = sim->g[e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const double explicit_part = theta < 1 ? (1 - theta) * dt * rhs[e][i] : 0;
+      rhs[e][i] = sim->rho->v[i] * (u[i] + dt * g[i]) + explicit_part;
+    }
+  }
+}
+
+static double velocity_scale(const struct simulation *sim, double dt) {
+  double most = 0;
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+      most = fmax(most, fabs(sim->u[e]->v[i] + dt * sim->g[e]->v[i]));
+    }
+  }
+  return mesh_max(sim->mesh, most);
+}
+
+static void diffuse_momentum(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  const struct params *params = sim->params;
+  double *u[DIM], *rhs[DIM];
+  const struct bc *bc[DIM];
+  velocities(sim->u, u);
+  for (int e = 0; e < DIM; e++) {
+    rhs[e] = sim->cell[e]->v;
+    bc[e] = sim->u[e]->bc;
+  }
+  viscous_rhs(sim, dt, rhs);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * sim->g[e]->v[i];
+  }
+  const double scale = fmax(velocity_scale(sim, 0), 1e-300);
+  sim->viscous = viscous_solve(
+      mesh, sim->hierarchy, sim->rho->v, sim->eta_f->v, params->theta * dt, rhs,
+      bc, params->tolerance_viscous * scale, params->max_iterations, u);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] -= dt * sim->g[e]->v[i];
+  }
+}
+
+/* Stage 8: before repetition k, viscosity from the latest u and p; the
+ * advected velocity is set back. */
+static void repeat_properties(struct simulation *sim, int k) {
+  const size_t bytes = (size_t)sim->mesh->nleaves * sizeof(double);
+  if (sim->params->picard == 0) return;
+  if (k > 0) update_viscosity(sim, sim->u);
+  for (int e = 0; e < DIM; e++) {
+    double *advected = sim->cell[DIM + e]->v;
+    memcpy(k > 0 ? sim->u[e]->v : advected, k > 0 ? advected : sim->u[e]->v,
+           bytes);
+  }
+}
+
+/* Stage 7: u^{n+1}, u_f^{n+1}, p^{n+1/2}. */
+static void project(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  struct projection projection = projection_of(sim);
+  double *u[DIM], *g[DIM];
+  velocities(sim->u, u), velocities(sim->g, g);
+  field_fill_many(mesh, DIM, sim->u);
+  projection_face_velocity(&projection, dt, u, sim->u_f->v);
+  sim->pressure = projection_project(&projection, dt, sim->u_f->v, sim->p->v);
+  projection_acceleration(&projection, sim->face[1]->v, g);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * g[e][i];
+  }
+}
+
+/* Stage 9: what the step did, for the csv and for adaptation. */
+static void measure(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double speed = 0, travel = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double c = sim->c->v[i];
+    double u2 = 0, eta = 0, face = 0;
+    for (int e = 0; e < DIM; e++) u2 += sim->u[e]->v[i] * sim->u[e]->v[i];
+    for (int f = 0; f < NFACE; f++) {
+      eta += sim->eta_f->v[mesh->cell_face[i][f]] / NFACE;
+      face = fmax(face, fabs(sim->u_f->v[mesh->cell_face[i][f]]));
+    }
+    sim->eta->v[i] = eta;
+    if (c > 0.5) speed = fmax(speed, sqrt(u2));
+    if (vof_is_cut(c)) travel = fmax(travel, face * dt / mesh->h[i]);
+  }
+  sim->max_speed = mesh_max(mesh, speed);
+  sim->travel += mesh_max(mesh, travel);
+}
+
+static bool is_finite(const struct simulation *sim) {
+  double sum = 0;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    sum += fabs(sim->p->v[i]);
+    for (int e = 0; e < DIM; e++) sum += fabs(sim->u[e]->v[i]);
+  }
+  return isfinite(mesh_sum(sim->mesh, sum));
+}
+
+int step_advance(struct simulation *sim, double dt_max) {
+  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  double dt_c;
+  const double dt = choose_dt(sim, dt_max, &dt_c);
+  advance_fractions(sim, dt_c);
+  update_density(sim);
+  update_viscosity(sim, sim->u_old);
+  add_dissipation(sim, dt);
+  advect_momentum(sim, dt);
+  for (int k = 0; k <= sim->params->picard; k++) {
+    repeat_properties(sim, k);
+    diffuse_momentum(sim, dt);
+    project(sim, dt);
+  }
+  sim->time += dt;
+  sim->dt = dt;
+  sim->step++;
+  measure(sim, dt);
+  if (!is_finite(sim)) return EXIT_NUMERICAL;
+  if (adapt_is_due(sim)) adapt_grid(sim);
+  return EXIT_DONE;
+}
+
+void step_synchronise(struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  memcpy(sim->c_old->v, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  if (sim->params->single_phase || sim->dt == 0) return;
+  memcpy(sim->u_half->v, sim->u_f->v,
+         (size_t)mesh->nfaces_all * sizeof(double));
+  clean_face_velocity(sim->clean, mesh, sim->open, sim->u_half->v);
+  advance_tracer(sim, 0.5 * sim->dt, sim->u_half->v, sim->c);
+}
+
+void step_desynchronise(struct simulation *sim) {
+  memcpy(sim->c->v, sim->c_old->v,
+         (size_t)sim->mesh->nleaves * sizeof(double));
+}
+
+struct solve_stats step_static_pressure(struct simulation *sim) {
+  struct projection projection = projection_of(sim);
+  double *rest[DIM], *g[DIM], size = 0;
+  update_density(sim);
+  velocities(sim->u_old, rest), velocities(sim->g, g);
+  for (int d = 0; d < DIM; d++) {
+    memset(rest[d], 0, (size_t)sim->mesh->ncells * sizeof(double));
+    size = fmax(size, fabs(sim->params->gravity[d]));
+  }
+  /* round-off: 1e-13 of the divergence gravity makes at a density jump */
+  projection.tolerance =
+      1e-13 * size / sim->params->size * exp2(sim->params->level_max);
+  projection_face_velocity(&projection, 1, rest, sim->face[1]->v);
+  struct solve_stats stats =
+      projection_project(&projection, 1, sim->face[1]->v, sim->p->v);
+  projection_acceleration(&projection, sim->face[1]->v, g);
+  return stats;
+}

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/vof.h"
+
+#include <math.h>
+
+#include "talus/error.h"
+#include "talus/plane.h"
+
+void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
+               double n[DIM], double *alpha) {
+  double stencil[NSTENCIL];
+  for (int s = 0; s < NSTENCIL; s++) {
+    stencil[s] = fmin(fmax(c[mesh->stencil[leaf][s]], 0), 1);
+  }
+  plane_normal(stencil, n);
+  *alpha = plane_alpha(n, stencil[STENCIL_CENTRE]);
+}
+
+void vof_reconstruct(const struct mesh *mesh, const double *c,
+                     double *const normal[DIM], double *alpha) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (!vof_is_cut(c[i])) continue;
+    double n[DIM];
+    vof_plane(mesh, c, i, n, &alpha[i]);
+    for (int d = 0; d < DIM; d++) normal[d][i] = n[d];
+  }
+  double *v[DIM + 1] = {alpha};
+  for (int d = 0; d < DIM; d++) v[d + 1] = normal[d];
+  mesh_fill_ghosts(mesh, DIM + 1, v);
+}
+
+/* Fraction of the volume swept through a face, |u| dt / h_face = swept, that
+ * the plane of the upwind leaf fills. The leaf may be twice as large as the
+ * face: then the face's part of it is one of its children. */
+static double swept_fraction(const struct mesh *mesh, int d, int32_t face,
+                             int upwind, double swept,
+                             double *const normal[DIM], const double *alpha) {
+  const int32_t leaf = mesh->face_leaf[face][upwind];
+  const int32_t node = mesh->face_node[face][upwind];
+  double n[DIM], lo[DIM], hi[DIM];
+  const bool coarse = node >= mesh->begin_virtual;
+  for (int e = 0; e < DIM; e++) {
+    n[e] = normal[e][leaf];
+    lo[e] = -0.5, hi[e] = 0.5;
+    if (coarse) {
+      const int upper = (node - mesh->begin_virtual) % NCHILD >> e & 1;
+      lo[e] = upper ? 0 : -0.5;
+      hi[e] = lo[e] + 0.5;
+    }
+  }
+  if (coarse) swept *= 0.5;
+  if (upwind == 0) {
+    lo[d] = hi[d] - swept;
+  } else {
+    hi[d] = lo[d] + swept;
+  }
+  return plane_box_volume(n, alpha[leaf], lo, hi);
+}
+
+void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
+              const double *c, double *const normal[DIM], const double *alpha,
+              double *flux) {
+  for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+    const double u = u_f[f];
+    const int upwind = u > 0 ? 0 : 1;
+    const int32_t leaf = mesh->face_leaf[f][upwind];
+    double fraction;
+    if (leaf < 0) { /* carried in through a boundary */
+      fraction = fmin(fmax(c[mesh->face_node[f][upwind]], 0), 1);
+    } else if (!vof_is_cut(c[leaf]) || u == 0) {
+      fraction = c[leaf];
+    } else {
+      fraction = swept_fraction(mesh, d, f, upwind,
+                                fabs(u) * dt / mesh->face_h[f], normal, alpha);
+    }
+    flux[f] = u * fraction;
+  }
+  mesh_fill_faces(mesh, 1, &flux);
+}
+
+void vof_freeze(const struct mesh *mesh, const double *c, double *cc) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) cc[i] = c[i] > 0.5;
+}
+
+void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
+                const double *flux, const double *cc, double *c) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t lower = mesh->cell_face[i][2 * d];
+    const int32_t upper = mesh->cell_face[i][2 * d + 1];
+    c[i] -= dt / mesh->h[i] *
+            (flux[upper] - flux[lower] - cc[i] * (u_f[upper] - u_f[lower]));
+  }
+}

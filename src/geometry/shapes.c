@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/shapes.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "talus/plane.h"
+
+enum { NVERTEX = 1 << DIM, NLATTICE = DIM == 2 ? 9 : 27 };
+
+/* A cell or piece of one, with the level set at its vertices and centre.
+ * Vertex v lies on the upper side of axis d when bit d of v is set. */
+struct piece {
+  double x[DIM], h;
+  double vertex[NVERTEX];
+  double centre;
+};
+
+struct shape {
+  shape_level_set f;
+  void *context;
+};
+
+static double evaluate(const struct shape *shape, const double x[DIM]) {
+  double point[3] = {0., 0., 0.};
+  for (int d = 0; d < DIM; d++) point[d] = x[d];
+  return shape->f(shape->context, point);
+}
+
+/* Is vertex v on the upper (1) or lower (-1) side of axis d? */
+static inline int side(int v, int d) { return (v >> d & 1) ? 1 : -1; }
+
+/* Largest change of f from the centre to a vertex. */
+static double variation(const struct piece *p) {
+  double largest = 0.;
+  for (int v = 0; v < NVERTEX; v++)
+    largest = fmax(largest, fabs(p->vertex[v] - p->centre));
+  return largest;
+}
+
+/* 1 if f > 0 at all points of the piece, -1 if f < 0, else 0. Vertices within
+ * `tolerance` of 0 do not object. */
+static int common_sign(const struct piece *p, double tolerance) {
+  int sign = (p->centre > 0.) - (p->centre < 0.);
+  for (int v = 0; v < NVERTEX; v++)
+    if (sign * p->vertex[v] < -tolerance) return 0;
+  return sign;
+}
+
+/* Fraction of the smallest piece, which is not halved any more. */
+static double cut_piece(const struct piece *p) {
+  double mean = 0., n[DIM], norm = 0., residual = 0.;
+  for (int v = 0; v < NVERTEX; v++) mean += p->vertex[v] / NVERTEX;
+  for (int d = 0; d < DIM; d++) {
+    n[d] = 0.; /* minus the slope of f: out of the grains */
+    for (int v = 0; v < NVERTEX; v++)
+      n[d] -= side(v, d) * p->vertex[v] * 2. / NVERTEX;
+    norm += fabs(n[d]);
+  }
+  double alpha = (2. * p->centre + mean) / 3.; /* eq. (2) */
+  for (int v = 0; v < NVERTEX; v++) {
+    double linear = p->centre;
+    for (int d = 0; d < DIM; d++) linear -= 0.5 * side(v, d) * n[d];
+    residual = fmax(residual, fabs(p->vertex[v] - linear));
+  }
+  /* A corner of a box that lies on a vertex, up to round-off in x, must not be
+   * taken for a slanted plane. A true plane is always cut. */
+  double tolerance = 1e-9 * variation(p);
+  int sign = common_sign(p, tolerance);
+  if (sign && (residual > tolerance || norm <= 0.)) return sign > 0 ? 1. : 0.;
+  if (norm <= 0.) return alpha > 0. ? 1. : alpha < 0. ? 0. : 0.5;
+  return plane_volume(n, alpha);
+}
+
+/* Level set on the lattice of half-edges: lattice[i + 3 j + 9 k] lies at
+ * (i - 1, j - 1, k - 1) h/2 from the centre. */
+static void fill_lattice(const struct shape *shape, const struct piece *p,
+                         double lattice[NLATTICE]) {
+  for (int s = 0; s < NLATTICE; s++) {
+    double x[DIM];
+    int rest = s, v = 0;
+    bool at_vertex = true;
+    for (int d = 0; d < DIM; d++, rest /= 3) {
+      int i = rest % 3;
+      x[d] = p->x[d] + 0.5 * (i - 1) * p->h;
+      if (i == 1) at_vertex = false;
+      if (i == 2) v |= 1 << d;
+    }
+    if (s == NLATTICE / 2)
+      lattice[s] = p->centre;
+    else
+      lattice[s] = at_vertex ? p->vertex[v] : evaluate(shape, x);
+  }
+}
+
+/* Child of p on the side of vertex `child`. */
+static struct piece half(const struct shape *shape, const struct piece *p,
+                         const double lattice[NLATTICE], int child) {
+  static const int stride[3] = {1, 3, 9};
+  struct piece q = {.h = 0.5 * p->h};
+  for (int d = 0; d < DIM; d++) q.x[d] = p->x[d] + 0.25 * side(child, d) * p->h;
+  for (int v = 0; v < NVERTEX; v++) {
+    int s = 0;
+    for (int d = 0; d < DIM; d++)
+      s += stride[d] * ((child >> d & 1) + (v >> d & 1));
+    q.vertex[v] = lattice[s];
+  }
+  q.centre = evaluate(shape, q.x);
+  return q;
+}
+
+/* Fraction of a piece that may still be halved `depth` times. */
+static double piece_fraction(const struct shape *shape, const struct piece *p,
+                             int depth) {
+  int sign = common_sign(p, 0.);
+  if (sign && fabs(p->centre) > 1.5 * variation(p)) return sign > 0 ? 1. : 0.;
+  if (depth <= 0) return cut_piece(p);
+  double lattice[NLATTICE], sum = 0.;
+  fill_lattice(shape, p, lattice);
+  for (int child = 0; child < NVERTEX; child++) {
+    struct piece q = half(shape, p, lattice, child);
+    sum += piece_fraction(shape, &q, depth - 1);
+  }
+  return sum / NVERTEX;
+}
+
+double shape_fraction(shape_level_set f, void *context,
+                      const double centre[DIM], double h, int depth) {
+  struct shape shape = {f, context};
+  struct piece p = {.h = h};
+  for (int d = 0; d < DIM; d++) p.x[d] = centre[d];
+  for (int v = 0; v < NVERTEX; v++) {
+    double x[DIM];
+    for (int d = 0; d < DIM; d++) x[d] = centre[d] + 0.5 * side(v, d) * h;
+    p.vertex[v] = evaluate(&shape, x);
+  }
+  p.centre = evaluate(&shape, centre);
+  return piece_fraction(&shape, &p, depth);
+}
+
+double shape_box(const double lo[DIM], const double hi[DIM],
+                 const double x[DIM]) {
+  double nearest = INFINITY;
+  for (int d = 0; d < DIM; d++)
+    nearest = fmin(nearest, fmin(x[d] - lo[d], hi[d] - x[d]));
+  return nearest;
+}
+
+double shape_sphere(const double centre[DIM], double radius,
+                    const double x[DIM]) {
+  double square = 0.;
+  for (int d = 0; d < DIM; d++)
+    square += (x[d] - centre[d]) * (x[d] - centre[d]);
+  return radius - sqrt(square);
+}

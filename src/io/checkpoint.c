@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/checkpoint.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/field.h"
+#include "talus/forest.h"
+#include "talus/hdf5_file.h"
+#include "talus/memory.h"
+#include "talus/mesh.h"
+#include "talus/output.h"
+
+enum { PATH_LENGTH = 4096, NAME_LENGTH = 128 };
+
+struct checkpoint {
+  struct hdf5_file *file;
+  char *path;
+};
+
+static void field_path(const struct field *field, char path[NAME_LENGTH]) {
+  int n = snprintf(path, NAME_LENGTH, "/fields/%s", field->name);
+  CHECK(n < NAME_LENGTH, "field name '%s' is too long", field->name);
+}
+
+/* Write */
+
+static void write_layout(struct hdf5_file *file,
+                         const struct forest_layout *layout) {
+  int64_t dimension = DIM, trees[DIM], periodic[DIM];
+  for (int d = 0; d < DIM; d++) {
+    trees[d] = layout->trees[d];
+    periodic[d] = layout->periodic[d];
+  }
+  hdf5_write_integer(file, "/", "dimension", 1, &dimension);
+  hdf5_write_integer(file, "/", "trees", DIM, trees);
+  hdf5_write_integer(file, "/", "periodic", DIM, periodic);
+  hdf5_write_real(file, "/", "size", 1, &layout->size);
+  hdf5_write_real(file, "/", "origin", DIM, layout->origin);
+}
+
+static void write_forest(struct hdf5_file *file, const struct forest *forest) {
+  int64_t n = forest_nleaves(forest);
+  int8_t *levels = MEM_NEW(int8_t, (size_t)n);
+  forest_levels(forest, levels);
+  hdf5_write(file, "levels", HDF5_INT8, n, 1, levels);
+  hdf5_write(file, "partition", HDF5_INT64, 1, 1, &n);
+  mem_free(levels);
+}
+
+/* The values of a face field on all sides of the leaves; caller frees. */
+static double *sides_from_faces(const struct mesh *mesh, const double *v) {
+  double *side = MEM_NEW(double, (size_t)mesh->nleaves *NFACE);
+  double *copy = MEM_NEW(double, (size_t)mesh->nfaces_all);
+  memcpy(copy, v, sizeof(double) * (size_t)mesh->nfaces_all);
+  mesh_fill_faces(mesh, 1, &copy); /* the run must not notice a checkpoint */
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    for (int f = 0; f < NFACE; f++)
+      side[(int64_t)i * NFACE + f] = copy[mesh->cell_face[i][f]];
+  mem_free(copy);
+  return side;
+}
+
+static void write_field(struct hdf5_file *file, const struct mesh *mesh,
+                        const struct field *field) {
+  char path[NAME_LENGTH];
+  field_path(field, path);
+  if (field->location == FIELD_CELL) {
+    hdf5_write(file, path, HDF5_REAL, mesh->nleaves, 1, field->v);
+  } else {
+    double *side = sides_from_faces(mesh, field->v);
+    hdf5_write(file, path, HDF5_REAL, mesh->nleaves, NFACE, side);
+    mem_free(side);
+  }
+  hdf5_write_text(file, path, "unit", field->unit);
+  hdf5_write_text(file, path, "title", field->title);
+}
+
+static void write_scalars(struct hdf5_file *file, int n,
+                          const struct checkpoint_scalar *scalars) {
+  hdf5_write_group(file, "state");
+  for (int k = 0; k < n; k++) {
+    if (scalars[k].real != NULL)
+      hdf5_write_real(file, "state", scalars[k].name, 1, scalars[k].real);
+    else
+      hdf5_write_integer(file, "state", scalars[k].name, 1, scalars[k].integer);
+  }
+}
+
+void checkpoint_write(const char *path, const struct mesh *mesh,
+                      const struct fields *fields, int n,
+                      const struct checkpoint_scalar *scalars,
+                      const char *parameters) {
+  char draft[PATH_LENGTH];
+  int length = snprintf(draft, sizeof draft, "%s.tmp", path);
+  CHECK(length < PATH_LENGTH, "path '%s' is too long", path);
+  struct hdf5_file *file = hdf5_create(mesh->comm, draft);
+  output_write_heading(file, parameters);
+  write_layout(file, forest_layout(mesh->forest));
+  write_forest(file, mesh->forest);
+  write_scalars(file, n, scalars);
+  hdf5_write_group(file, "fields");
+  for (int k = 0; k < fields->n; k++)
+    if (fields->field[k]->restart) write_field(file, mesh, fields->field[k]);
+  hdf5_close(file, true);
+  if (mesh->rank == 0 && rename(draft, path) != 0)
+    FATAL("cannot rename '%s' to '%s': %s", draft, path, strerror(errno));
+  MPI_CHECK(MPI_Barrier(mesh->comm));
+}
+
+/* Read */
+
+static void refuse_other_box(const char *path, const char *what) {
+  USER_ERROR(
+      "'%s' belongs to a run with another %s; --restart needs the box of that "
+      "run: give the same dimension, size, origin, trees and periodic axes, or "
+      "start afresh without --restart",
+      path, what);
+}
+
+static void compare_layout(struct hdf5_file *file, const char *path,
+                           const struct forest_layout *layout) {
+  int64_t dimension = 0, trees[DIM], periodic[DIM];
+  double size = 0, origin[DIM];
+  if (!hdf5_read_integer(file, "/", "dimension", 1, &dimension))
+    USER_ERROR("'%s' is no checkpoint of talus", path);
+  if (dimension != DIM) refuse_other_box(path, "dimension");
+  if (!hdf5_read_integer(file, "/", "trees", DIM, trees) ||
+      !hdf5_read_integer(file, "/", "periodic", DIM, periodic) ||
+      !hdf5_read_real(file, "/", "size", 1, &size) ||
+      !hdf5_read_real(file, "/", "origin", DIM, origin))
+    USER_ERROR("'%s' does not say which box it is for", path);
+  if (size != layout->size) refuse_other_box(path, "size of the box");
+  for (int d = 0; d < DIM; d++) {
+    if (trees[d] != layout->trees[d]) refuse_other_box(path, "brick of trees");
+    if ((periodic[d] != 0) != layout->periodic[d])
+      refuse_other_box(path, "set of periodic axes");
+    if (origin[d] != layout->origin[d]) refuse_other_box(path, "origin");
+  }
+}
+
+struct checkpoint *checkpoint_open(MPI_Comm comm, const char *path,
+                                   const struct forest_layout *layout) {
+  struct hdf5_file *file = hdf5_open(comm, path);
+  if (file == NULL)
+    USER_ERROR(
+        "'%s' is missing or damaged, there is nothing to go on from; start "
+        "afresh without --restart",
+        path);
+  compare_layout(file, path, layout);
+  struct checkpoint *checkpoint = MEM_NEW(struct checkpoint, 1);
+  checkpoint->file = file;
+  checkpoint->path = MEM_NEW(char, strlen(path) + 1);
+  strcpy(checkpoint->path, path);
+  return checkpoint;
+}
+
+void checkpoint_close(struct checkpoint *checkpoint) {
+  hdf5_close(checkpoint->file, false);
+  mem_free(checkpoint->path);
+  mem_free(checkpoint);
+}
+
+/* This rank's share of the leaves: the old one on as many ranks as before,
+ * else an even one. */
+static void share_leaves(struct checkpoint *checkpoint, MPI_Comm comm,
+                         int64_t all, int64_t *first, int64_t *n) {
+  int rank, nranks, columns = 0;
+  int64_t old = 0;
+  MPI_CHECK(MPI_Comm_rank(comm, &rank));
+  MPI_CHECK(MPI_Comm_size(comm, &nranks));
+  if (hdf5_read_size(checkpoint->file, "partition", &old, &columns) &&
+      old == nranks) {
+    hdf5_read(checkpoint->file, "partition", HDF5_INT64, rank, 1, 1, n);
+    MPI_CHECK(MPI_Scan(n, first, 1, MPI_INT64_T, MPI_SUM, comm));
+    *first -= *n;
+  } else {
+    *first = all * rank / nranks;
+    *n = all * (rank + 1) / nranks - *first;
+  }
+}
+
+struct forest *checkpoint_forest(struct checkpoint *checkpoint,
+                                 const struct forest_layout *layout) {
+  MPI_Comm comm = hdf5_comm(checkpoint->file);
+  int64_t all = 0, first = 0, n = 0, sum = 0;
+  int columns = 0;
+  if (!hdf5_read_size(checkpoint->file, "levels", &all, &columns))
+    USER_ERROR("'%s' holds no leaves", checkpoint->path);
+  share_leaves(checkpoint, comm, all, &first, &n);
+  MPI_CHECK(MPI_Allreduce(&n, &sum, 1, MPI_INT64_T, MPI_SUM, comm));
+  if (sum != all)
+    USER_ERROR("'%s' is damaged: it shares out %" PRId64 " of %" PRId64
+               " leaves",
+               checkpoint->path, sum, all);
+  int8_t *levels = MEM_NEW(int8_t, (size_t)n);
+  hdf5_read(checkpoint->file, "levels", HDF5_INT8, first, n, 1, levels);
+  struct forest *forest = forest_from_levels(comm, layout, n, levels);
+  mem_free(levels);
+  if (forest == NULL)
+    USER_ERROR("'%s' is damaged: its leaves do not fill the box",
+               checkpoint->path);
+  return forest;
+}
+
+/* Each face takes the value of the side of its owner that is this face. */
+static void faces_from_sides(const struct mesh *mesh, const double *side,
+                             double *v) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      int32_t owner = mesh->face_owner[f];
+      int upper = mesh->face_node[f][0] == owner;
+      v[f] = side[(int64_t)owner * NFACE + 2 * d + upper];
+    }
+  }
+  mesh_fill_faces(mesh, 1, &v);
+}
+
+static void read_field(struct checkpoint *checkpoint, const struct mesh *mesh,
+                       struct field *field) {
+  char path[NAME_LENGTH];
+  field_path(field, path);
+  int64_t all = 0, first = forest_first_leaf(mesh->forest);
+  int columns = 0, wanted = field->location == FIELD_CELL ? 1 : NFACE;
+  if (!hdf5_read_size(checkpoint->file, path, &all, &columns) ||
+      columns != wanted || all != forest_nleaves_global(mesh->forest))
+    USER_ERROR(
+        "'%s' has no values of %s (%s) for this case; --restart needs the "
+        "phases and tracers of the first run",
+        checkpoint->path, field->name, field->title);
+  double *value = MEM_NEW(double, (size_t)mesh->nleaves *(size_t)wanted);
+  hdf5_read(checkpoint->file, path, HDF5_REAL, first, mesh->nleaves, wanted,
+            value);
+  if (field->location == FIELD_CELL)
+    memcpy(field->v, value, sizeof(double) * (size_t)mesh->nleaves);
+  else
+    faces_from_sides(mesh, value, field->v);
+  mem_free(value);
+}
+
+void checkpoint_read_fields(struct checkpoint *checkpoint,
+                            const struct mesh *mesh, struct fields *fields) {
+  for (int k = 0; k < fields->n; k++)
+    if (fields->field[k]->restart)
+      read_field(checkpoint, mesh, fields->field[k]);
+}
+
+void checkpoint_read_scalars(struct checkpoint *checkpoint, int n,
+                             const struct checkpoint_scalar *scalars) {
+  for (int k = 0; k < n; k++) {
+    const struct checkpoint_scalar *s = &scalars[k];
+    bool found = s->real != NULL ? hdf5_read_real(checkpoint->file, "state",
+                                                  s->name, 1, s->real)
+                                 : hdf5_read_integer(checkpoint->file, "state",
+                                                     s->name, 1, s->integer);
+    if (!found)
+      USER_ERROR("'%s' has no '%s'; it was written by another version of talus",
+                 checkpoint->path, s->name);
+  }
+}

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/output.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "talus/error.h"
+#include "talus/hdf5_file.h"
+#include "talus/memory.h"
+
+/* Runs of one rank may do without MPI (unit tests). */
+static void broadcast(void *data, size_t bytes) {
+  if (base_size() > 1)
+    MPI_CHECK(MPI_Bcast(data, (int)bytes, MPI_BYTE, 0, MPI_COMM_WORLD));
+}
+
+/* 0, or the errno that keeps `path` from being a directory we can write in,
+ * now or once it is made: the nearest ancestor that is there decides. */
+static int directory_errno(const char *path) {
+  char *part = MEM_NEW(char, strlen(path) + 3);
+  strcpy(part, path[0] == '\0' ? "." : path);
+  struct stat status;
+  int error;
+  while ((error = stat(part, &status) == 0 ? 0 : errno) == ENOENT) {
+    char *slash = strrchr(part, '/');
+    if (slash == NULL) {
+      strcpy(part, ".");
+    } else if (slash == part && slash[1] != '\0') {
+      slash[1] = '\0';
+    } else {
+      *slash = '\0';
+    }
+    if (part[0] == '\0') break;
+  }
+  if (error == 0 && !S_ISDIR(status.st_mode)) error = ENOTDIR;
+  if (error == 0 && access(part, W_OK | X_OK) != 0) error = errno;
+  mem_free(part);
+  return error;
+}
+
+static void refuse_directory(const char *directory, int error) {
+  if (error != 0)
+    USER_ERROR(
+        "cannot write to the output directory '%s': %s; choose another with -o "
+        "DIR",
+        directory, strerror(error));
+}
+
+void output_check_directory(const char *directory) {
+  int error = base_rank() == 0 ? directory_errno(directory) : 0;
+  broadcast(&error, sizeof error);
+  refuse_directory(directory, error);
+}
+
+/* mkdir -p; returns 0 or an errno. */
+static int make_directories(const char *directory) {
+  char *part = MEM_NEW(char, strlen(directory) + 1);
+  int error = 0;
+  strcpy(part, directory);
+  for (char *end = part + 1; error == 0 && end[-1] != '\0'; end++) {
+    if (*end != '/' && *end != '\0') continue;
+    char c = *end;
+    *end = '\0';
+    if (mkdir(part, 0777) != 0 && errno != EEXIST) error = errno;
+    *end = c;
+  }
+  mem_free(part);
+  return error != 0 ? error : directory_errno(directory);
+}
+
+void output_make_directory(const char *directory) {
+  int error = base_rank() == 0 ? make_directories(directory) : 0;
+  broadcast(&error, sizeof error);
+  refuse_directory(directory, error);
+}
+
+char *output_path(const char *directory, const char *name) {
+  size_t size = strlen(directory) + strlen(name) + 2;
+  char *path = MEM_NEW(char, size);
+  snprintf(path, size, "%s/%s", directory, name);
+  return path;
+}
+
+/* Whether there was such a file; a directory that loses files while we write
+ * is no reason to stop. */
+static bool remove_file(const char *directory, const char *name) {
+  char *path = output_path(directory, name);
+  bool removed = unlink(path) == 0;
+  mem_free(path);
+  return removed;
+}
+
+/* Nobody writes before the old files are gone. */
+static void wait_for_others(void) {
+  if (base_size() > 1) MPI_CHECK(MPI_Barrier(MPI_COMM_WORLD));
+}
+
+void output_remove_snapshots(const char *directory, int first) {
+  bool more = base_rank() == 0;
+  for (; more; first++) {
+    char name[32];
+    snprintf(name, sizeof name, "snapshot-%06d.h5", first);
+    more = remove_file(directory, name);
+  }
+  wait_for_others();
+}
+
+void output_remove_run(const char *directory) {
+  static const char *const name[] = {"checkpoint.h5", "checkpoint.h5.tmp",
+                                     "run.log", "snapshots.xdmf"};
+  if (base_rank() == 0)
+    for (size_t k = 0; k < sizeof name / sizeof name[0]; k++)
+      remove_file(directory, name[k]);
+  output_remove_snapshots(directory, 0);
+}
+
+char *output_parameters(void (*write)(void *context, FILE *f), void *context) {
+  char *text = NULL;
+  size_t length = 0;
+  if (base_rank() == 0 && write != NULL) {
+    FILE *f = open_memstream(&text, &length);
+    if (f == NULL) FATAL("no memory for the list of parameters");
+    write(context, f);
+    fclose(f);
+  }
+  broadcast(&length, sizeof length);
+  char *copy = MEM_NEW(char, length + 1);
+  if (text != NULL) memcpy(copy, text, length);
+  free(text); /* made by open_memstream */
+  broadcast(copy, length + 1);
+  return copy;
+}
+
+void output_write_text(const char *directory, const char *name,
+                       const char *text) {
+  if (base_rank() != 0) return;
+  char *path = output_path(directory, name);
+  FILE *f = fopen(path, "w");
+  if (f == NULL) FATAL("cannot write '%s': %s", path, strerror(errno));
+  fputs(text, f);
+  output_flush(f, path);
+  fclose(f);
+  mem_free(path);
+}
+
+/* Next cell of a csv line, quotes removed, into `cell`; returns what is
+ * left. */
+static const char *read_cell(const char *line, size_t size, char *cell) {
+  bool quoted = false;
+  size_t n = 0;
+  for (; *line != '\0' && *line != '\n' && (quoted || *line != ','); line++) {
+    if (*line == '"') {
+      bool twice = quoted && line[1] == '"';
+      if (!twice) {
+        quoted = !quoted;
+        continue;
+      }
+      line++;
+    }
+    if (n + 1 < size && *line != '\r') cell[n++] = *line;
+  }
+  cell[n] = '\0';
+  return *line == ',' ? line + 1 : line;
+}
+
+void output_write_heading(struct hdf5_file *file, const char *parameters) {
+  char name[128], value[8192];
+  hdf5_write_text(file, "/", "version", TALUS_VERSION);
+  hdf5_write_group(file, "parameters");
+  for (const char *line = parameters; *line != '\0';) {
+    const char *rest = read_cell(line, sizeof name, name);
+    rest = read_cell(rest, sizeof value, value);
+    /* not the header, and of two lines with one name the first */
+    char known[2];
+    if (line != parameters && name[0] != '\0' &&
+        !hdf5_read_text(file, "parameters", name, sizeof known, known))
+      hdf5_write_text(file, "parameters", name, value);
+    line = strchr(rest, '\n');
+    if (line == NULL) break;
+    line++;
+  }
+}
+
+char *output_number(double value, char text[32]) {
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, 32, "%.*g", digits, value);
+    if (strtod(text, NULL) == value) break;
+  }
+  return text;
+}
+
+void output_flush(FILE *f, const char *path) {
+  if (fflush(f) != 0 || ferror(f))
+    FATAL("cannot write '%s': %s; is there space left on the disk?", path,
+          strerror(errno));
+}

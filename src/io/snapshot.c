@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/snapshot.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/field.h"
+#include "talus/hdf5_file.h"
+#include "talus/memory.h"
+#include "talus/output.h"
+#include "vertices.h"
+#include "xdmf.h"
+
+enum { NAME_LENGTH = 128 };
+
+struct snapshots {
+  char *directory;
+  int count;
+  struct xdmf *index;
+};
+
+static void snapshot_name(int number, char name[NAME_LENGTH]) {
+  snprintf(name, NAME_LENGTH, "snapshot-%06d.h5", number);
+}
+
+static char *snapshot_path(const struct snapshots *snapshots, int number) {
+  char name[NAME_LENGTH];
+  snapshot_name(number, name);
+  return output_path(snapshots->directory, name);
+}
+
+/* The arrays a snapshot holds, one entry per dataset with values on cells. */
+static void describe_fields(const struct fields *fields,
+                            struct xdmf_grid *grid) {
+  for (int k = 0; k < fields->n; k++) {
+    const struct field *field = fields->field[k];
+    if (!field->output || field->component > 0) continue;
+    struct xdmf_array *array = &grid->array[grid->narrays++];
+    CHECK(strlen(field->name) < sizeof array->name, "name '%s' is too long",
+          field->name);
+    strcpy(array->name, field->name);
+    array->columns = 1;
+    if (field->component == 0) { /* "u_x" begins the vector "u" */
+      array->name[strlen(field->name) - 2] = '\0';
+      array->columns = 3;
+    }
+  }
+}
+
+/* Values of a field on leaves, into every `columns`-th place of v. */
+static void cell_values(const struct mesh *mesh, const struct field *field,
+                        int columns, double *v) {
+  if (field->location == FIELD_CELL) {
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      v[(int64_t)i * columns] = field->v[i];
+    return;
+  }
+  double *copy = MEM_NEW(double, (size_t)mesh->nfaces_all);
+  memcpy(copy, field->v, sizeof(double) * (size_t)mesh->nfaces_all);
+  mesh_fill_faces(mesh, 1, &copy); /* the run must not notice a snapshot */
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double sum = 0;
+    for (int f = 0; f < NFACE; f++) sum += copy[mesh->cell_face[i][f]];
+    v[(int64_t)i * columns] = sum / NFACE;
+  }
+  mem_free(copy);
+}
+
+/* The part of a vector along axis d, NULL if there is none. */
+static const struct field *find_component(const struct fields *fields,
+                                          const char *vector, int d) {
+  char name[NAME_LENGTH];
+  snprintf(name, sizeof name, "%s_%c", vector, "xyz"[d]);
+  return fields_find(fields, name);
+}
+
+static void write_array(struct hdf5_file *file, const struct mesh *mesh,
+                        const struct fields *fields,
+                        const struct xdmf_array *array) {
+  double *v = MEM_NEW(double, (size_t)mesh->nleaves *(size_t)array->columns);
+  const struct field *first = array->columns == 1
+                                  ? fields_find(fields, array->name)
+                                  : find_component(fields, array->name, 0);
+  cell_values(mesh, first, array->columns, v);
+  for (int d = 1; d < DIM && array->columns > 1; d++) {
+    const struct field *part = find_component(fields, array->name, d);
+    if (part != NULL) cell_values(mesh, part, array->columns, v + d);
+  }
+  hdf5_write(file, array->name, HDF5_REAL, mesh->nleaves, array->columns, v);
+  hdf5_write_text(file, array->name, "unit", first->unit);
+  hdf5_write_text(file, array->name, "title", first->title);
+  mem_free(v);
+}
+
+static void write_mesh(struct hdf5_file *file, const struct mesh *mesh) {
+  struct vertices vertices;
+  vertices_find(mesh, &vertices);
+  hdf5_write(file, "vertices", HDF5_REAL, vertices.n, DIM, vertices.x);
+  hdf5_write(file, "cells", HDF5_INT64, mesh->nleaves, NCHILD, vertices.cell);
+  vertices_free(&vertices);
+  hdf5_write_text(file, "vertices", "unit", "m");
+  hdf5_write_text(file, "vertices", "title", "corners of the leaves");
+  hdf5_write_text(file, "cells", "unit", "1");
+  hdf5_write_text(file, "cells", "title", "vertices of each leaf");
+  hdf5_write(file, "level", HDF5_INT8, mesh->nleaves, 1, mesh->level);
+  hdf5_write_text(file, "level", "unit", "1");
+  hdf5_write_text(file, "level", "title", "level of refinement");
+}
+
+/* What the index must know of a file, from the file. False if unreadable. */
+static bool read_grid(struct hdf5_file *file, struct xdmf_grid *grid) {
+  char list[4096];
+  int columns;
+  if (!hdf5_read_real(file, "/", "time", 1, &grid->time) ||
+      !hdf5_read_size(file, "vertices", &grid->nvertices, &columns) ||
+      !hdf5_read_size(file, "cells", &grid->ncells, &columns) ||
+      !hdf5_read_text(file, "/", "fields", sizeof list, list))
+    return false;
+  grid->narrays = 0;
+  char *rest = list;
+  for (char *name; (name = strtok_r(rest, " ", &rest)) != NULL;) {
+    struct xdmf_array *array = &grid->array[grid->narrays];
+    int64_t rows;
+    if (grid->narrays == XDMF_MAX_ARRAYS ||
+        strlen(name) >= sizeof array->name ||
+        !hdf5_read_size(file, name, &rows, &array->columns))
+      return false;
+    strcpy(array->name, name);
+    grid->narrays++;
+  }
+  return true;
+}
+
+static void add_to_index(struct snapshots *snapshots, int number) {
+  struct xdmf_grid grid = {.narrays = 0};
+  char *path = snapshot_path(snapshots, number);
+  struct hdf5_file *file = hdf5_open(MPI_COMM_WORLD, path);
+  mem_free(path);
+  if (file == NULL) return; /* taken away by its owner */
+  if (read_grid(file, &grid)) {
+    snapshot_name(number, grid.file);
+    xdmf_add(snapshots->index, &grid);
+  }
+  hdf5_close(file, false);
+}
+
+struct snapshots *snapshots_new(const char *directory, int count) {
+  struct snapshots *snapshots = MEM_NEW(struct snapshots, 1);
+  snapshots->directory = MEM_NEW(char, strlen(directory) + 1);
+  strcpy(snapshots->directory, directory);
+  snapshots->count = count;
+  snapshots->index = xdmf_new();
+  for (int k = 0; k < count; k++) add_to_index(snapshots, k);
+  return snapshots;
+}
+
+void snapshots_destroy(struct snapshots *snapshots) {
+  xdmf_destroy(snapshots->index);
+  mem_free(snapshots->directory);
+  mem_free(snapshots);
+}
+
+int snapshots_count(const struct snapshots *snapshots) {
+  return snapshots->count;
+}
+
+/* Names of the arrays on cells, for read_grid and for other readers. */
+static void write_list(struct hdf5_file *file, const struct xdmf_grid *grid) {
+  char list[4096] = "";
+  for (int k = 0; k < grid->narrays; k++) {
+    if (k > 0) strcat(list, " ");
+    strcat(list, grid->array[k].name);
+  }
+  hdf5_write_text(file, "/", "fields", list);
+}
+
+void snapshots_write(struct snapshots *snapshots, const struct mesh *mesh,
+                     const struct fields *fields,
+                     const struct snapshot_heading *heading) {
+  char *path = snapshot_path(snapshots, snapshots->count);
+  struct hdf5_file *file = hdf5_create(mesh->comm, path);
+  struct xdmf_grid grid = {.narrays = 0};
+  describe_fields(fields, &grid);
+  output_write_heading(file, heading->parameters);
+  hdf5_write_real(file, "/", "time", 1, &heading->time);
+  hdf5_write_integer(file, "/", "step", 1, &heading->step);
+  hdf5_write_real(file, "/", "length_scale", 1, &heading->length_scale);
+  write_list(file, &grid);
+  write_mesh(file, mesh);
+  for (int k = 0; k < grid.narrays; k++)
+    write_array(file, mesh, fields, &grid.array[k]);
+  read_grid(file, &grid);
+  hdf5_close(file, false);
+  mem_free(path);
+
+  snapshot_name(snapshots->count++, grid.file);
+  xdmf_add(snapshots->index, &grid);
+  path = output_path(snapshots->directory, "snapshots.xdmf");
+  xdmf_write(snapshots->index, path);
+  mem_free(path);
+}

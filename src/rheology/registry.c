@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Names, keys and values: what the case file and the log see of a closure. */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "models.h"
+
+#define ADDRESS(name) &rheology_##name,
+static const struct rheology_model *const MODELS[] = {RHEOLOGY_MODELS(ADDRESS)};
+#undef ADDRESS
+
+enum { NMODELS = sizeof(MODELS) / sizeof(MODELS[0]) };
+
+/* In the order of shared_value. */
+static const struct rheology_key SHARED[] = {
+    {"eta_min", "Pa s", 0., 1e30, 0., "smallest viscosity"},
+    {"eta_max", "Pa s", 1e-30, 1e30, 1e30, "largest viscosity"},
+    {"gamma_r", "1/s", 1e-12, 1e12, 1e-3,
+     "shear rate of papanastasiou and bercovier_engelman"},
+};
+
+static const char *const REGULARISATIONS[] = {
+    [RHEOLOGY_CLIP] = "clip",
+    [RHEOLOGY_PAPANASTASIOU] = "papanastasiou",
+    [RHEOLOGY_BERCOVIER_ENGELMAN] = "bercovier_engelman",
+};
+
+int rheology_count(void) { return NMODELS; }
+
+const struct rheology_model *rheology_get(int i) {
+  return i >= 0 && i < NMODELS ? MODELS[i] : NULL;
+}
+
+const struct rheology_model *rheology_find(const char *name) {
+  for (int i = 0; i < NMODELS; i++)
+    if (strcmp(MODELS[i]->name, name) == 0) return MODELS[i];
+  return NULL;
+}
+
+/* Levenshtein distance; of b only the first 63 characters count. */
+static int edit_distance(const char *a, const char *b) {
+  enum { LONGEST = 63 };
+  int row[LONGEST + 1], nb = 0;
+  while (b[nb] != '\0' && nb < LONGEST) nb++;
+  for (int j = 0; j <= nb; j++) row[j] = j;
+  for (int i = 1; *a != '\0'; a++, i++) {
+    int diagonal = row[0];
+    row[0] = i;
+    for (int j = 1; j <= nb; j++) {
+      int change = diagonal + (*a != b[j - 1]);
+      int add = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+      diagonal = row[j];
+      row[j] = change < add ? change : add;
+    }
+  }
+  return row[nb];
+}
+
+const char *rheology_nearest(const char *name) {
+  int best = 0;
+  for (int i = 1; i < NMODELS; i++)
+    if (edit_distance(name, MODELS[i]->name) <
+        edit_distance(name, MODELS[best]->name))
+      best = i;
+  return MODELS[best]->name;
+}
+
+const struct rheology_key *rheology_key(const struct rheology_model *model,
+                                        int i) {
+  if (i < 0) return NULL;
+  if (i < model->nkeys) return &model->keys[i];
+  i -= model->nkeys;
+  return i < NKEYS(SHARED) ? &SHARED[i] : NULL;
+}
+
+/* Where r keeps the value of key i, rheology_key(r->model, i) not being NULL */
+static double *value_of(struct rheology *r, int i) {
+  double *shared_value[NKEYS(SHARED)] = {&r->eta_min, &r->eta_max, &r->gamma_r};
+  int nkeys = r->model->nkeys;
+  return i < nkeys ? &r->param[i] : shared_value[i - nkeys];
+}
+
+double rheology_value(const struct rheology *r, int i) {
+  struct rheology copy = *r;
+  return *value_of(&copy, i);
+}
+
+void rheology_init(struct rheology *r, const struct rheology_model *model) {
+  *r = (struct rheology){.model = model, .regularisation = RHEOLOGY_CLIP};
+  const struct rheology_key *key;
+  for (int i = 0; (key = rheology_key(model, i)) != NULL; i++)
+    *value_of(r, i) = key->initial;
+}
+
+int rheology_set(struct rheology *r, const char *key, double value) {
+  const struct rheology_key *known;
+  for (int i = 0; (known = rheology_key(r->model, i)) != NULL; i++) {
+    if (strcmp(known->name, key) != 0) continue;
+    if (isnan(value) || value < known->min || value > known->max) return -2;
+    *value_of(r, i) = value;
+    return 0;
+  }
+  return -1;
+}
+
+const struct rheology_key *rheology_missing(const struct rheology *r) {
+  const struct rheology_key *key;
+  for (int i = 0; (key = rheology_key(r->model, i)) != NULL; i++)
+    if (isnan(rheology_value(r, i))) return key;
+  return NULL;
+}
+
+int rheology_set_regularisation(struct rheology *r, const char *name) {
+  const char *known;
+  for (int i = 0; (known = rheology_regularisation_name(i)) != NULL; i++) {
+    if (strcmp(known, name) != 0) continue;
+    r->regularisation = (enum rheology_regularisation)i;
+    return 0;
+  }
+  return -1;
+}
+
+const char *rheology_regularisation_name(int i) {
+  int n = (int)(sizeof(REGULARISATIONS) / sizeof(REGULARISATIONS[0]));
+  return i >= 0 && i < n ? REGULARISATIONS[i] : NULL;
+}

@@ -1,0 +1,404 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The order of things within a step: advance, row of series.csv, outline,
+ * snapshot, checkpoint, stop. A checkpoint so comes after all rows up to its
+ * time, and a restart keeps just those rows. What is due follows from step and
+ * time alone, so a run in pieces writes what one in one piece does. */
+#include "talus/run.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+
+#include "talus/diagnostics.h"
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/log.h"
+#include "talus/memory.h"
+#include "talus/output.h"
+#include "talus/params.h"
+#include "talus/profile.h"
+#include "talus/progress.h"
+#include "talus/run_state.h"
+#include "talus/series.h"
+#include "talus/simulation.h"
+#include "talus/snapshot.h"
+#include "talus/step.h"
+
+/* Set by the handler, the one thing a signal handler may do. */
+static volatile sig_atomic_t signal_caught;
+
+enum timed {
+  TIME_START,
+  TIME_STEP,
+  TIME_TABLES,
+  TIME_SNAPSHOT,
+  TIME_CHECKPOINT,
+  NTIMED
+};
+
+struct run {
+  const struct params *params;
+  const struct run_options *options;
+  struct simulation *sim;
+  struct series *series;
+  struct profile *profile;
+  struct snapshots *snapshots;
+  struct progress *progress;
+  char *parameters; /* csv text */
+  char *checkpoint_path;
+  bool checkpoint_written; /* there is one of this run */
+  double wall_checkpoint;  /* when the last one was written */
+  struct run_state before; /* when this invocation began */
+  double wall_begin;       /* then */
+  int64_t first_step;      /* the step then */
+  double seconds[NTIMED];  /* where the time went */
+  double cell_steps;
+};
+
+/* Time: nearly equal times are equal, so that no sliver of a step is left. */
+static bool same_time(const struct run *run, double a, double b) {
+  return fabs(a - b) <= 1e-12 * fmax(fabs(run->params->stop), fabs(b));
+}
+
+static bool at_end(const struct run *run) {
+  double time = run->sim->time, stop = run->params->stop;
+  return time >= stop || same_time(run, time, stop);
+}
+
+/* The next time a step must land on. */
+static double next_event(const struct run *run) {
+  double time = run->sim->time, next = run->params->stop;
+  for (int k = 0; k < run->params->nprofile_times; k++) {
+    double t = run->params->profile_times[k];
+    if (t > time && t < next && !same_time(run, t, time)) next = t;
+  }
+  return next;
+}
+
+/* Largest next step: it ends on the event or leaves a whole step before it. */
+static double step_bound(const struct run *run, double event) {
+  double left = event - run->sim->time, dt = run->sim->dt;
+  return dt > 0 && left > dt * (1 + 1e-9) && left < 2 * dt ? 0.5 * left : left;
+}
+
+static bool outline_due(const struct run *run) {
+  if (at_end(run)) return true;
+  for (int k = 0; k < run->params->nprofile_times; k++)
+    if (same_time(run, run->sim->time, run->params->profile_times[k]))
+      return true;
+  return false;
+}
+
+/* Snapshots do not bind the steps: the first step at or after the time. */
+static bool snapshot_due(const struct run *run) {
+  double every = run->params->snapshot_every, time = run->sim->time;
+  if (run->sim->step == 0 || at_end(run)) return true;
+  if (every <= 0) return false;
+  return floor(time / every + 1e-9) >
+         floor((time - run->sim->dt) / every + 1e-9);
+}
+
+static double lap(struct run *run, enum timed what, double since) {
+  double now = MPI_Wtime();
+  run->seconds[what] += now - since;
+  return now;
+}
+
+static double wall_seconds(const struct run *run) {
+  return run->before.wall_seconds + MPI_Wtime() - run->wall_begin;
+}
+
+static void write_row(struct run *run, const struct diagnostics *d) {
+  const struct simulation *sim = run->sim;
+  const struct energy *energy = &sim->energy;
+  struct series_row row = {.step = sim->step,
+                           .time = sim->time,
+                           .dt = sim->dt,
+                           .cells = forest_nleaves_global(sim->forest),
+                           .front = d->front,
+                           .height = d->height,
+                           .volume = d->volume,
+                           .kinetic = d->kinetic,
+                           .potential = d->potential,
+                           .dissipated = energy->dissipated,
+                           .max_speed = d->max_speed,
+                           .pressure_iterations = sim->pressure.iterations,
+                           .viscous_iterations = sim->viscous.iterations,
+                           .wall_seconds = wall_seconds(run),
+                           .droplets = d->droplets.n,
+                           .droplet_volume = d->droplets.volume,
+                           .numerical = energy->initial - d->kinetic -
+                                        d->potential - energy->dissipated,
+                           .divergence_volume = sim->divergence_volume,
+                           .pressure_residual = sim->pressure.residual_after,
+                           .viscous_residual = sim->viscous.residual_after};
+  series_write(run->series, &row);
+}
+
+/* Rows of both tables, where they are due. */
+static void write_tables(struct run *run) {
+  struct simulation *sim = run->sim;
+  int every = run->params->series_every;
+  bool row = at_end(run) || every <= 1 || sim->step % every == 0;
+  bool outline = outline_due(run);
+  if (!row && !outline) return;
+  struct diagnostics d;
+  step_synchronise(sim);
+  diagnostics_measure(sim, &d);
+  step_desynchronise(sim);
+  sim->energy.kinetic = d.kinetic;
+  sim->energy.potential = d.potential;
+  sim->max_speed = d.max_speed;
+  if (sim->step == 0) sim->energy.initial = d.kinetic + d.potential;
+  if (row) write_row(run, &d);
+  if (outline)
+    profile_write(run->profile, sim->time, d.outline.n, d.outline.first,
+                  d.outline.spacing, d.outline.height);
+  diagnostics_free(&d);
+}
+
+static void write_snapshot(struct run *run) {
+  if (!snapshot_due(run)) return;
+  const struct simulation *sim = run->sim;
+  struct snapshot_heading heading = {.time = sim->time,
+                                     .step = sim->step,
+                                     .length_scale = run->params->length_scale,
+                                     .parameters = run->parameters};
+  snapshots_write(run->snapshots, sim->mesh, &sim->fields, &heading);
+}
+
+/* Everything after a step, and before the first one, but the checkpoint. */
+static void write_output(struct run *run) {
+  double now = MPI_Wtime();
+  write_tables(run);
+  now = lap(run, TIME_TABLES, now);
+  write_snapshot(run);
+  lap(run, TIME_SNAPSHOT, now);
+}
+
+static void write_checkpoint(struct run *run) {
+  double begin = MPI_Wtime();
+  struct run_state state = {.wall_seconds = wall_seconds(run),
+                            .snapshots = snapshots_count(run->snapshots)};
+  run_state_write(run->checkpoint_path, run->sim, &state, run->parameters);
+  run->checkpoint_written = true;
+  run->wall_checkpoint = lap(run, TIME_CHECKPOINT, begin);
+  log_info("step %" PRId64 ", time %.10g: checkpoint", run->sim->step,
+           run->sim->time);
+}
+
+/* Begin and end */
+
+static void open_files(struct run *run) {
+  const struct simulation *sim = run->sim;
+  const char *directory = run->options->directory;
+  bool keep = run->options->restart;
+  output_make_directory(directory);
+  if (keep)
+    output_remove_snapshots(directory, (int)run->before.snapshots);
+  else
+    output_remove_run(directory);
+  char *path = output_path(directory, "run.log");
+  if (!log_open(path)) USER_ERROR("cannot write '%s'", path);
+  mem_free(path);
+  output_write_text(directory, "parameters.csv", run->parameters);
+  /* the last digits of a time may have been lost on the way */
+  double last = sim->time + 1e-12 * fabs(run->params->stop);
+  run->series = series_open(directory, keep, sim->step);
+  run->profile = profile_open(directory, keep, last);
+  run->snapshots = snapshots_new(directory, (int)run->before.snapshots);
+  run->progress =
+      progress_new(sim->time, run->params->stop, run->options->quiet);
+}
+
+static void say_begin(const struct run *run) {
+  const struct simulation *sim = run->sim;
+  char date[64] = "";
+  time_t now = time(NULL);
+  strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S", localtime(&now));
+  log_info("talus %s, %d-dimensional, %d rank%s, %s", TALUS_VERSION, DIM,
+           base_size(), base_size() == 1 ? "" : "s", date);
+  log_info("%s: %s", run->params->name, run->params->title);
+  log_info("%s at step %" PRId64 ", time %.10g with %" PRId64 " cells",
+           run->options->restart ? "restart" : "start", sim->step, sim->time,
+           forest_nleaves_global(sim->forest));
+  progress_say(run->progress, "%s: %" PRId64 " cells on %d rank%s, to time %g",
+               run->params->name, forest_nleaves_global(sim->forest),
+               base_size(), base_size() == 1 ? "" : "s", run->params->stop);
+}
+
+static struct run *run_new(const struct params *params,
+                           const struct run_options *options) {
+  struct run *run = MEM_NEW(struct run, 1);
+  double begin = MPI_Wtime();
+  run->params = params;
+  run->options = options;
+  output_check_directory(options->directory);
+  run->checkpoint_path = output_path(options->directory, "checkpoint.h5");
+  run->parameters =
+      output_parameters(options->write_parameters, options->context);
+  run->checkpoint_written = options->restart;
+  run->sim = options->restart
+                 ? run_state_read(run->checkpoint_path, params, &run->before)
+                 : simulation_new(params);
+  open_files(run);
+  run->first_step = run->sim->step;
+  run->wall_begin = run->wall_checkpoint = lap(run, TIME_START, begin);
+  say_begin(run);
+  return run;
+}
+
+static void run_destroy(struct run *run) {
+  progress_destroy(run->progress);
+  snapshots_destroy(run->snapshots);
+  profile_close(run->profile);
+  series_close(run->series);
+  simulation_destroy(run->sim);
+  mem_free(run->parameters);
+  mem_free(run->checkpoint_path);
+  log_close();
+  mem_free(run);
+}
+
+static void say_timing(const struct run *run) {
+  static const char *const title[] = {
+      "start", "steps", "tables (series, profile)", "snapshots", "checkpoints"};
+  double all = 0;
+  for (int k = 0; k < NTIMED; k++) all += run->seconds[k];
+  for (int k = 0; k < NTIMED; k++)
+    progress_say(run->progress, "  %-26s%9.3f s %5.1f %%", title[k],
+                 run->seconds[k], 100 * run->seconds[k] / fmax(all, 1e-9));
+  progress_say(run->progress, "  per cell and step       %11.0f ns",
+               1e9 * run->seconds[TIME_STEP] / fmax(run->cell_steps, 1));
+}
+
+static void say_end(const struct run *run, const char *why) {
+  const struct simulation *sim = run->sim;
+  double wall = MPI_Wtime() - run->wall_begin;
+  int64_t steps = sim->step - run->first_step;
+  char line[512];
+  snprintf(line, sizeof line,
+           "%s at step %" PRId64 ", time %.6g: %" PRId64
+           " steps in %.2f s (%.1f steps/s)",
+           why, sim->step, sim->time, steps, wall,
+           (double)steps / fmax(wall, 1e-9));
+  log_info("%s", line);
+  progress_say(run->progress, "%s", line);
+  if (at_end(run)) {
+    progress_say(run->progress, "results are in %s", run->options->directory);
+  } else {
+    snprintf(line, sizeof line,
+             "the state is in %s; the same command with --restart goes on from "
+             "there",
+             run->checkpoint_path);
+    log_info("%s", line);
+    progress_say(run->progress, "%s", line);
+  }
+  if (run->options->timing) say_timing(run);
+}
+
+/* The solvers gave up: what is on the disk stays as it is. */
+static void say_failure(const struct run *run) {
+  if (base_rank() != 0) return;
+  char line[512];
+  int n = snprintf(
+      line, sizeof line,
+      "the run gave up after step %" PRId64
+      ", time %.6g: a solve failed, or the fields are no longer finite; ",
+      run->sim->step, run->sim->time);
+  if (run->checkpoint_written)
+    snprintf(line + n, sizeof line - (size_t)n,
+             "the last good state is in %s, --restart goes on from it",
+             run->checkpoint_path);
+  else
+    snprintf(line + n, sizeof line - (size_t)n,
+             "there is no checkpoint yet (see checkpoint_every)");
+  fprintf(stderr, "talus: error: %s\n", line);
+  log_info("error: %s", line);
+}
+
+/* The loop */
+
+static void catch_signal(int number) { signal_caught = number; }
+
+/* A second signal of the kind ends the program at once. */
+static void catch_signals(void) {
+  struct sigaction action = {.sa_handler = catch_signal};
+  action.sa_flags = (int)SA_RESETHAND | SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+}
+
+/* What all ranks agree to do after a step. */
+struct verdict {
+  int signal, out_of_time, checkpoint;
+};
+
+static struct verdict agree(const struct run *run) {
+  double now = MPI_Wtime(), every = run->params->checkpoint_every;
+  double most = run->options->max_walltime;
+  int mine[3] = {signal_caught, most > 0 && now - run->wall_begin >= most,
+                 every > 0 && now - run->wall_checkpoint >= every};
+  int all[3];
+  MPI_CHECK(MPI_Allreduce(mine, all, 3, MPI_INT, MPI_MAX, MPI_COMM_WORLD));
+  return (struct verdict){all[0], all[1], all[2]};
+}
+
+/* Why to stop now; NULL: go on. */
+static const char *reason_to_stop(const struct run *run,
+                                  const struct verdict *verdict) {
+  int64_t steps = run->sim->step - run->first_step;
+  if (at_end(run)) return "done";
+  if (verdict->signal == SIGINT) return "stopped by SIGINT";
+  if (verdict->signal != 0) return "stopped by SIGTERM";
+  if (verdict->out_of_time) return "stopped by --max-walltime";
+  if (run->options->max_steps >= 0 && steps >= run->options->max_steps)
+    return "stopped by --max-steps";
+  return NULL;
+}
+
+/* One step, its clock set to the event it was meant to reach. */
+static int advance(struct run *run) {
+  struct simulation *sim = run->sim;
+  double begin = MPI_Wtime(), event = next_event(run);
+  int status = step_advance(sim, step_bound(run, event));
+  if (same_time(run, sim->time, event)) sim->time = event;
+  run->cell_steps += (double)forest_nleaves_global(sim->forest);
+  lap(run, TIME_STEP, begin);
+  return status;
+}
+
+static int run_loop(struct run *run) {
+  const struct simulation *sim = run->sim;
+  for (;;) {
+    struct verdict verdict = agree(run);
+    const char *why = reason_to_stop(run, &verdict);
+    bool fresh = sim->step > run->first_step || !run->checkpoint_written;
+    if (fresh && (why != NULL || verdict.checkpoint)) write_checkpoint(run);
+    if (why != NULL) {
+      say_end(run, why);
+      return EXIT_DONE;
+    }
+    int status = advance(run);
+    if (status != EXIT_DONE) {
+      say_failure(run);
+      return status;
+    }
+    write_output(run);
+    progress_step(run->progress, sim->step, sim->time, sim->dt,
+                  forest_nleaves_global(sim->forest));
+  }
+}
+
+int run_case(const struct params *params, const struct run_options *options) {
+  signal_caught = 0;
+  catch_signals();
+  struct run *run = run_new(params, options);
+  if (!options->restart) write_output(run);
+  int status = run_loop(run);
+  run_destroy(run);
+  return status;
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The coarsest level, the trees of the brick: conjugate gradients, scaled by
+ * the diagonal. Components are not coupled here. */
+#include <math.h>
+#include <string.h>
+
+#include "levels.h"
+#include "talus/forest.h"
+
+/* q = A p. */
+static void apply(const struct hierarchy *h, const double *p, double *q) {
+  const int nparts = h->nparts;
+  for (int32_t i = 0; i < h->level[0].nowned; i++) {
+    for (int c = 0; c < nparts; c++) {
+      const int32_t k = i * nparts + c;
+      double sum = h->inverse[k] > 0 ? p[k] / h->inverse[k] : 0;
+      for (int f = 0; f < NFACE; f++) {
+        const int twice = nparts > 1 && c == f >> 1 ? 2 : 1;
+        sum -= twice * h->w[i][f] * p[h->neighbour[i][f] * nparts + c];
+      }
+      q[k] = sum;
+    }
+  }
+}
+
+void coarse_solve(struct hierarchy *h) {
+  const int32_t n = h->level[0].nowned * h->nparts;
+  const struct forest_layout *layout = forest_layout(h->mesh->forest);
+  int most = 8;
+  for (int d = 0; d < DIM; d++) most += 2 * layout->trees[d];
+  double *e = h->e, *r = h->r; /* trees have the first slots */
+  double *z = h->coarse[0], *p = h->coarse[1], *q = h->coarse[2];
+  double rz_old = 0, rz_first = 0;
+  memset(p, 0, (size_t)n * sizeof *p);
+  memset(e, 0, (size_t)n * sizeof *e);
+  for (int iteration = 0; iteration < most; iteration++) {
+    double rz = 0, pq = 0;
+    for (int32_t k = 0; k < n; k++) {
+      z[k] = h->inverse[k] * r[k];
+      rz += r[k] * z[k];
+    }
+    if (iteration == 0) rz_first = rz;
+    if (!(rz > 1e-6 * rz_first)) break;
+    const double beta = iteration > 0 ? rz / rz_old : 0;
+    for (int32_t k = 0; k < n; k++) p[k] = z[k] + beta * p[k];
+    apply(h, p, q);
+    for (int32_t k = 0; k < n; k++) pq += p[k] * q[k];
+    if (!(pq > 1e-14 * rz)) break; /* only the constant is left */
+    const double a = rz / pq;
+    for (int32_t k = 0; k < n; k++) {
+      e[k] += a * p[k];
+      r[k] -= a * q[k];
+    }
+    rz_old = rz;
+  }
+}

@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Making a hierarchy from the sorted leaves.
+ *
+ * A leaf whose first corner is the first corner of coarser nodes opens the
+ * families below them, so one pass over the leaves lists all families in
+ * curve order. Parents are found by merging two sorted lists, neighbours from
+ * the parents' neighbours (links.c); keys are searched for only next to other
+ * ranks (ghosts.c). */
+#include "talus/hierarchy.h"
+
+#include <string.h>
+
+#include "linking.h"
+#include "talus/error.h"
+#include "talus/memory.h"
+
+/* Coarsest level of which a node has its first corner at `key`. */
+static int coarsest_at(uint64_t key) {
+  const uint64_t morton = key & (curve_span(0) - 1);
+  if (morton == 0) return 0;
+  return FOREST_MAX_LEVEL - __builtin_ctzll(morton) / DIM;
+}
+
+int linking_owner(const struct linking *k, int level, uint64_t key) {
+  if (level <= k->gathered) return 0;
+  const uint64_t parent = key_align(key, level - 1);
+  int low = 0, high = k->nranks - 1;
+  while (low < high) { /* last rank whose first key is <= parent */
+    const int middle = (low + high + 1) / 2;
+    if (k->first_keys[middle] <= parent) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low;
+}
+
+int32_t linking_find(const struct linking *k, int level, uint64_t key) {
+  const struct level *l = &k->h->level[level];
+  if (level == 0) {
+    return l->nowned ? l->begin + (int32_t)(key >> CURVE_BITS) : SLOT_UNKNOWN;
+  }
+  const uint64_t parent = key_align(key, level - 1);
+  const uint64_t *list = k->parent_key[level];
+  int32_t low = 0, high = l->nfamilies;
+  while (low < high) { /* first family with key >= parent */
+    const int32_t middle = low + (high - low) / 2;
+    if (list[middle] < parent) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  if (low == l->nfamilies || list[low] != parent) return SLOT_UNKNOWN;
+  return family_slot(l, low, key_child(key, level));
+}
+
+int linking_place(const struct linking *k, uint64_t key, int level,
+                  const int offset[DIM], uint64_t *neighbour) {
+  int dropped = 0;
+  int64_t x[DIM];
+  curve_coordinates(k->curve, key, x);
+  for (int d = 0; d < DIM; d++) {
+    const int64_t extent = (int64_t)k->layout->trees[d] * curve_edge(0);
+    const int64_t step = offset[d] * curve_edge(level);
+    if (x[d] + step >= 0 && x[d] + step < extent) {
+      x[d] += step;
+    } else if (k->layout->periodic[d]) {
+      x[d] += step + (step < 0 ? extent : -extent);
+    } else {
+      dropped |= 1 << d;
+    }
+  }
+  *neighbour = curve_key(k->curve, x);
+  return dropped;
+}
+
+/* Lists of families, by the leaves of this rank. */
+static void list_families(struct linking *k) {
+  struct hierarchy *h = k->h;
+  const struct mesh *mesh = h->mesh;
+  for (int pass = 0; pass < 2; pass++) {
+    for (int l = 0; l < h->nlevels; l++) {
+      if (pass) k->parent_key[l] = MEM_NEW(uint64_t, h->level[l].nfamilies);
+      h->level[l].nfamilies = 0;
+    }
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      for (int l = coarsest_at(mesh->key[i]); l < mesh->level[i]; l++) {
+        const int32_t n = h->level[l + 1].nfamilies++;
+        if (pass) k->parent_key[l + 1][n] = mesh->key[i];
+      }
+    }
+  }
+}
+
+static void gather_level(struct linking *k, int l) {
+  struct level *level = &k->h->level[l];
+  const MPI_Comm comm = k->h->mesh->comm;
+  int *count = MEM_NEW(int, 2 * k->nranks), *begin = count + k->nranks;
+  int mine = level->nfamilies, total = 0;
+  MPI_CHECK(MPI_Gather(&mine, 1, MPI_INT, count, 1, MPI_INT, 0, comm));
+  for (int r = 0; r < k->nranks; r++) {
+    begin[r] = total;
+    total += count[r];
+  }
+  uint64_t *all = MEM_NEW(uint64_t, total);
+  MPI_CHECK(MPI_Gatherv(k->parent_key[l], mine, MPI_UINT64_T, all, count, begin,
+                        MPI_UINT64_T, 0, comm));
+  mem_free(k->parent_key[l]);
+  mem_free(count);
+  k->parent_key[l] = all;
+  level->nfamilies = total;
+}
+
+/* Small levels, from the coarsest on, become rank 0's. */
+static void gather_levels(struct linking *k) {
+  struct hierarchy *h = k->h;
+  int64_t n[FOREST_MAX_LEVEL + 1] = {0};
+  for (int l = 0; l < h->nlevels; l++) n[l] = h->level[l].nfamilies;
+  MPI_CHECK(MPI_Allreduce(MPI_IN_PLACE, n, h->nlevels, MPI_INT64_T, MPI_SUM,
+                          h->mesh->comm));
+  for (int l = 1; l < h->nlevels && n[l] * NCHILD <= LEVEL_GATHERED; l++) {
+    k->gathered = l;
+    gather_level(k, l);
+  }
+}
+
+static void number_slots(struct linking *k) {
+  struct hierarchy *h = k->h;
+  int64_t slots = 0, families = 0;
+  for (int l = 0; l < h->nlevels; l++) {
+    struct level *level = &h->level[l];
+    level->begin = (int32_t)slots;
+    level->family_begin = (int32_t)families;
+    level->nowned = NCHILD * level->nfamilies;
+    if (l == 0 && k->rank == 0) level->nowned = k->curve->ntrees;
+    slots += level->nowned;
+    families += level->nfamilies;
+    CHECK(slots < INT32_MAX / (2 * DIM), "too many nodes on one rank");
+  }
+  h->nowned = h->nactive = (int32_t)slots;
+  h->family_parent = MEM_NEW(int32_t, families);
+}
+
+/* Slot of the node at `key` of a level, by moving `cursor` up the sorted list
+ * of families. */
+static int32_t find_next(const struct linking *k, int l, uint64_t key,
+                         int32_t *cursor) {
+  if (l == 0) return linking_find(k, 0, key);
+  const struct level *level = &k->h->level[l];
+  const uint64_t parent = key_align(key, l - 1);
+  while (*cursor < level->nfamilies && k->parent_key[l][*cursor] < parent) {
+    ++*cursor;
+  }
+  if (*cursor == level->nfamilies || k->parent_key[l][*cursor] != parent) {
+    return SLOT_UNKNOWN;
+  }
+  return family_slot(level, *cursor, key_child(key, l));
+}
+
+static void find_parents(struct linking *k) {
+  struct hierarchy *h = k->h;
+  for (int l = 1; l < h->nlevels; l++) {
+    const struct level *level = &h->level[l];
+    int32_t cursor = 0;
+    for (int32_t n = 0; n < level->nfamilies; n++) {
+      const uint64_t key = k->parent_key[l][n];
+      int32_t slot = find_next(k, l - 1, key, &cursor);
+      if (slot == SLOT_UNKNOWN) slot = ghosts_get(k, key, l - 1);
+      h->family_parent[level->family_begin + n] = slot;
+    }
+  }
+  h->nactive = h->nowned + k->nghosts;
+  k->slot_family = MEM_NEW(int32_t, h->nactive);
+  for (int32_t i = 0; i < h->nactive; i++) k->slot_family[i] = -1;
+  for (int l = 1; l < h->nlevels; l++) {
+    const struct level *level = &h->level[l];
+    for (int32_t n = 0; n < level->nfamilies; n++) {
+      k->slot_family[h->family_parent[level->family_begin + n]] = n;
+    }
+  }
+}
+
+static void find_leaves(struct linking *k) {
+  struct hierarchy *h = k->h;
+  const struct mesh *mesh = h->mesh;
+  int32_t cursor[FOREST_MAX_LEVEL + 1] = {0};
+  h->leaf_slot = MEM_NEW(int32_t, mesh->nleaves);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int l = mesh->level[i];
+    int32_t slot = find_next(k, l, mesh->key[i], &cursor[l]);
+    if (slot == SLOT_UNKNOWN) slot = ghosts_get(k, mesh->key[i], l);
+    h->leaf_slot[i] = slot;
+  }
+}
+
+static int slot_level(const struct linking *k, int32_t slot) {
+  const struct hierarchy *h = k->h;
+  if (slot >= h->nowned) return k->ghost_level[slot - h->nowned];
+  int l = h->nlevels - 1;
+  while (slot < h->level[l].begin) l--;
+  return l;
+}
+
+/* Slopes of the coarse leaf: centred if both its neighbours are nodes of its
+ * level, else one-sided. */
+static void set_slopes(const struct linking *k, int l, struct jump *jump) {
+  const struct hierarchy *h = k->h;
+  const struct level *level = &h->level[l];
+  const int child =
+      colour_child((jump->fine - level->begin) / level->nfamilies);
+  for (int d = 0; d < DIM; d++) {
+    int steps = 0;
+    for (int side = 0; side < 2; side++) {
+      const int32_t n = h->neighbour[jump->coarse][2 * d + side];
+      const bool usable = n != jump->coarse && slot_level(k, n) == l - 1;
+      jump->node[d][side] = usable ? n : jump->coarse;
+      steps += usable;
+    }
+    /* the virtual child lies towards the fine node */
+    const int upper = d == jump->face >> 1 ? !(jump->face & 1) : child >> d & 1;
+    jump->weight[d] = steps ? (upper ? 0.25f : -0.25f) / (float)steps : 0;
+  }
+}
+
+/* Faces of owned nodes beyond which lies a coarser leaf. */
+static void list_jumps(struct linking *k, int l, bool count_only) {
+  struct hierarchy *h = k->h;
+  struct level *level = &h->level[l];
+  level->jump_begin = h->njumps;
+  for (int32_t i = level->begin; i < level->begin + level->nowned; i++) {
+    for (int f = 0; f < NFACE; f++) {
+      const int32_t j = h->neighbour[i][f];
+      if (j >= level->begin && j < h->nowned) continue;
+      if (slot_level(k, j) == l) continue;
+      if (!count_only) {
+        struct jump *jump = &h->jump[h->njumps];
+        jump->fine = i;
+        jump->coarse = j;
+        jump->face = f;
+        set_slopes(k, l, jump);
+      }
+      h->njumps++;
+    }
+  }
+  level->jump_end = h->njumps;
+}
+
+static void find_jumps(struct linking *k) {
+  struct hierarchy *h = k->h;
+  for (int l = 1; l < h->nlevels; l++) list_jumps(k, l, true);
+  h->jump = MEM_NEW(struct jump, h->njumps);
+  h->njumps = 0;
+  for (int l = 1; l < h->nlevels; l++) list_jumps(k, l, false);
+  for (int32_t n = 0; n < h->njumps; n++) {
+    h->neighbour[h->jump[n].fine][h->jump[n].face] = h->nslots + n;
+  }
+}
+
+/* Patches of walls, from the leaves up; of several patches on the side of a
+ * merged node one is taken. Travels in h->w, which is not needed yet. */
+static void find_patches(struct hierarchy *h) {
+  const struct mesh *mesh = h->mesh;
+  double *w = &h->w[0][0];
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int f = 0; f < NFACE; f++) {
+      const int32_t face = mesh->cell_face[i][f];
+      if (face < mesh->nfaces) {
+        h->w[h->leaf_slot[i]][f] = mesh->face_patch[face] + 1;
+      }
+    }
+  }
+  for (int l = h->nlevels - 1; l >= 0; l--) {
+    const struct level *level = &h->level[l];
+    plan_run(&h->level[l].add, 1, &w, NFACE, true);
+    for (int32_t k = 0; k < level->nfamilies; k++) {
+      const int32_t parent = h->family_parent[level->family_begin + k];
+      for (int c = 0; c < NCHILD; c++) {
+        for (int d = 0; d < DIM; d++) {
+          const int f = 2 * d + (c >> d & 1);
+          h->w[parent][f] = h->w[family_slot(level, k, c)][f];
+        }
+      }
+    }
+  }
+  for (int l = 0; l < h->nlevels; l++) {
+    plan_run(&h->level[l].copy, 1, &w, NFACE, false);
+  }
+  h->patch = mem_alloc((size_t)h->nactive, sizeof *h->patch);
+  for (int32_t i = 0; i < h->nactive; i++) {
+    for (int f = 0; f < NFACE; f++) {
+      h->patch[i][f] = (int8_t)(h->wall[i] >> f & 1 ? h->w[i][f] - 1 : -1);
+    }
+  }
+}
+
+static void allocate(struct hierarchy *h) {
+  const size_t n = (size_t)h->nslots, ncoarse = (size_t)h->level[0].nowned;
+  h->w = mem_alloc(n, sizeof *h->w);
+  h->beyond = mem_alloc((size_t)h->nlevels, sizeof *h->beyond);
+  h->inverse = MEM_NEW(double, n *DIM);
+  h->e = MEM_NEW(double, (n + (size_t)h->njumps) * DIM);
+  h->r = MEM_NEW(double, n *DIM);
+  for (int k = 0; k < 3; k++) h->coarse[k] = MEM_NEW(double, ncoarse *DIM);
+  const struct mesh *mesh = h->mesh;
+  const size_t nleaves = (size_t)mesh->nleaves * DIM;
+  h->work_cells = MEM_NEW(double, (size_t)mesh->ncells *DIM);
+  h->work_faces = MEM_NEW(double, (size_t)mesh->nfaces_all *DIM);
+  h->residual = MEM_NEW(double, nleaves);
+  h->weight = MEM_NEW(double, nleaves);
+  h->update = MEM_NEW(double, nleaves);
+  h->scale = MEM_NEW(double, mesh->nleaves);
+  h->krylov = krylov_space_new();
+}
+
+struct hierarchy *hierarchy_new(const struct mesh *mesh) {
+  struct hierarchy *h = MEM_NEW(struct hierarchy, 1);
+  h->mesh = mesh;
+  h->revision = mesh->revision;
+  h->nlevels = mesh->level_finest + 1;
+  h->nranks = mesh->nranks;
+  h->nleaves = mesh->nleaves;
+  h->level = MEM_NEW(struct level, h->nlevels);
+  struct linking k = {.h = h,
+                      .curve = forest_curve(mesh->forest),
+                      .layout = forest_layout(mesh->forest),
+                      .first_keys = mesh->first_keys,
+                      .rank = mesh->rank,
+                      .nranks = mesh->nranks};
+  k.parent_key = MEM_NEW(uint64_t *, h->nlevels);
+  table_begin(&k.ghosts, 0);
+  list_families(&k);
+  if (k.nranks > 1) gather_levels(&k);
+  number_slots(&k);
+  find_parents(&k);
+  find_leaves(&k);
+  links_make(&k);
+  for (int l = 0; l < h->nlevels; l++) {
+    plan_begin(&h->level[l].copy, mesh->comm);
+    plan_begin(&h->level[l].add, mesh->comm);
+  }
+  if (k.nranks > 1) ghosts_make(&k);
+  h->nslots = h->nowned + k.nghosts;
+  find_jumps(&k);
+  allocate(h);
+  find_patches(h);
+  for (int l = 0; l < h->nlevels; l++) mem_free(k.parent_key[l]);
+  mem_free(k.parent_key);
+  mem_free(k.slot_family);
+  mem_free(k.key);
+  mem_free(k.level_of);
+  mem_free(k.wanted);
+  mem_free(k.ghost_key);
+  mem_free(k.ghost_level);
+  table_end(&k.ghosts);
+  return h;
+}
+
+void hierarchy_destroy(struct hierarchy *h) {
+  if (!h) return;
+  for (int l = 0; l < h->nlevels; l++) {
+    struct plan *add = &h->level[l].add, *copy = &h->level[l].copy;
+    if (add->send_begin == copy->recv_begin) { /* borrowed */
+      add->send_begin = add->recv_begin = NULL;
+      add->send_index = add->recv_index = NULL;
+    }
+    plan_end(add);
+    plan_end(copy);
+  }
+  krylov_space_destroy(h->krylov);
+  void *owned[] = {h->patch,     h->beyond,        h->level,
+                   h->leaf_slot, h->family_parent, h->neighbour,
+                   h->corner,    h->wall,          h->jump,
+                   h->w,         h->inverse,       h->e,
+                   h->r,         h->coarse[0],     h->coarse[1],
+                   h->coarse[2], h->work_cells,    h->work_faces,
+                   h->residual,  h->weight,        h->update,
+                   h->scale};
+  for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
+  mem_free(h);
+}
+
+int64_t hierarchy_bytes(const struct hierarchy *h) {
+  const struct mesh *mesh = h->mesh;
+  const int64_t link = NFACE + NCORNER, number = sizeof(double);
+  const int64_t slot = NFACE * number + 3 * DIM * number;
+
+  return h->nactive * (link * (int64_t)sizeof(int32_t) + 1) + h->nslots * slot +
+         h->njumps * (int64_t)(sizeof(struct jump) + DIM * sizeof(double)) +
+         mesh->nleaves * (int64_t)(sizeof(int32_t) + 3 * DIM * number) +
+         (int64_t)(mesh->ncells + mesh->nfaces_all) * DIM * number +
+         krylov_space_bytes(h->krylov);
+}

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The insides of a hierarchy, shared by the files of solver/.
+ *
+ * Slots: [0, nowned) nodes of this rank, level after level; [nowned, nslots)
+ * ghosts, nodes of other ranks that ours refer to. A family is the NCHILD
+ * children of one node; it is whole on one rank. On level l >= 1 the red
+ * children of all families come first, then the black ones.
+ */
+#ifndef TALUS_SOLVER_LEVELS_H
+#define TALUS_SOLVER_LEVELS_H
+
+#include <stdbool.h>
+
+#include "../tree/plan.h"
+#include "talus/hierarchy.h"
+#include "talus/krylov.h"
+
+enum {
+  HALF = NCHILD / 2,
+  NPAIR = DIM * (DIM - 1) / 2, /* pairs of axes */
+  NCORNER = 4 * NPAIR,         /* nodes diagonally across an edge (3D) or a
+                                  corner (2D) */
+  LEVEL_GATHERED = 256         /* nodes of a level that one rank does alone */
+};
+
+struct level {
+  int32_t begin;        /* first slot */
+  int32_t nowned;       /* slots, trees on level 0, else NCHILD per family */
+  int32_t nfamilies;    /* 0 on level 0 */
+  int32_t family_begin; /* into family_parent */
+  int32_t jump_begin, jump_end; /* into jump */
+  struct plan copy;             /* owned -> ghost values of this level */
+  struct plan add; /* the same backwards; borrows the lists of copy */
+};
+
+/* A face of an owned node beyond which lies a leaf one level coarser. The
+ * node sees a virtual child of that leaf, as on the mesh: slot nslots + k of
+ * h->e, interpolated linearly. */
+struct jump {
+  int32_t fine, coarse; /* slots */
+  int32_t face;
+  int32_t node[DIM][2]; /* slots whose difference is the slope along an axis */
+  float weight[DIM];
+};
+
+struct hierarchy {
+  const struct mesh *mesh; /* borrowed */
+  uint64_t revision;       /* of the mesh */
+  int nlevels;             /* level_finest + 1 */
+  int nranks;
+  struct level *level;             /* [nlevels] */
+  int32_t nowned, nactive, nslots; /* [nowned, nactive): ghosts that are
+                                      parents of our families */
+  int32_t nleaves;
+  int32_t *leaf_slot;          /* [nleaves] */
+  int32_t *family_parent;      /* slot one level up */
+  int32_t (*neighbour)[NFACE]; /* [nactive] slots; itself at a wall, a
+                                  virtual child across a jump */
+  int32_t (*corner)[NCORNER];  /* [nactive] of axes a < b, 4 pair + (upper
+                                  a) + 2 (upper b); mirrored at a wall */
+  uint8_t *wall;               /* [nactive] bit f: face f is a wall */
+  int8_t (*patch)[NFACE];      /* [nactive] beyond that face, or -1 */
+  int32_t njumps;
+  struct jump *jump;
+  /* Operator: set by coefficients_set for each solve */
+  int nparts;         /* 1, or DIM: velocity */
+  double (*w)[NFACE]; /* [nslots] alpha area / distance, 0 at a wall */
+  double *inverse;    /* [nslots * nparts] 1 / diagonal, 0 if it is 0 */
+  double *e, *r;      /* [nslots * nparts] correction, residual */
+  /* Value beyond a wall over that inside, [nlevels] */
+  double (*beyond)[DIM][MESH_MAX_PATCHES];
+  double *coarse[3]; /* [trees * nparts] for conjugate gradients */
+  /* Work of the outer solver */
+  double *work_cells;                 /* [DIM * ncells] */
+  double *work_faces;                 /* [DIM * nfaces_all] */
+  double *residual, *weight, *update; /* [DIM * nleaves] */
+  double *scale;                      /* [nleaves] */
+  struct krylov_space *krylov;
+};
+
+/* Place of child c among the colours of a level: even sums of coordinates,
+ * red, come first. No two nodes of one colour share a face or an edge. */
+static inline int child_colour(int c) {
+  return (__builtin_popcount((unsigned)c) & 1) * HALF + (c >> 1);
+}
+static inline int colour_child(int colour) {
+  const int j = colour % HALF;
+  return 2 * j + ((__builtin_popcount((unsigned)j) & 1) ^ (colour >= HALF));
+}
+/* Slot of child c of family k of a level. */
+static inline int32_t family_slot(const struct level *level, int32_t k, int c) {
+  return level->begin + child_colour(c) * level->nfamilies + k;
+}
+/* Number of the pair of axes a < b: 01, 02, 12. */
+static inline int pair_number(int a, int b) { return a + b - 1; }
+/* Entry of `corner` for the node one step along axes a != b. */
+static inline int corner_entry(int a, int upper_a, int b, int upper_b) {
+  return a < b ? 4 * pair_number(a, b) + upper_a + 2 * upper_b
+               : 4 * pair_number(b, a) + upper_b + 2 * upper_a;
+}
+
+/* Set the two-point operator (coefficients.c): conductances factor * alpha_f
+ * area / distance, mass [nleaves] per volume or NULL, walls by bc[nparts].
+ * nparts is 1, or DIM for the components of a velocity, whose normal stress
+ * is twice as stiff. Leaves krylov weights in h->weight. Collective. */
+void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
+                      double factor, const double *mass,
+                      const struct bc *const bc[]);
+/* e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times
+ * `sign`; e likewise. Collective. */
+void cycle_run(struct hierarchy *h, double sign, const double *r, double *e);
+/* The same on the trees alone (coarse.c): from h->r to h->e. */
+void coarse_solve(struct hierarchy *h);
+
+#endif

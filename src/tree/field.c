@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/field.h"
+
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/memory.h"
+
+static size_t field_length(const struct field *field, const struct mesh *mesh) {
+  return (size_t)(field->location == FIELD_CELL ? mesh->ncells
+                                                : mesh->nfaces_all);
+}
+
+struct field *fields_add(struct fields *fields, const struct mesh *mesh,
+                         const char *name, const char *unit, const char *title,
+                         enum field_location location, enum field_remap remap) {
+  CHECK(fields->n < FIELDS_MAX, "more than %d fields", FIELDS_MAX);
+  CHECK(!fields_find(fields, name), "field '%s' twice", name);
+  struct field *field = MEM_NEW(struct field, 1);
+  field->name = name, field->unit = unit, field->title = title;
+  field->location = location, field->remap = remap;
+  field->component = -1;
+  field->v = MEM_NEW(double, field_length(field, mesh));
+  fields->field[fields->n++] = field;
+  return field;
+}
+
+struct field *fields_find(const struct fields *fields, const char *name) {
+  for (int k = 0; k < fields->n; k++) {
+    if (strcmp(fields->field[k]->name, name) == 0) return fields->field[k];
+  }
+  return NULL;
+}
+
+void fields_reset(struct fields *fields, const struct mesh *mesh) {
+  for (int k = 0; k < fields->n; k++) {
+    struct field *field = fields->field[k];
+    mem_free(field->v);
+    field->v = MEM_NEW(double, field_length(field, mesh));
+  }
+}
+
+void fields_destroy(struct fields *fields) {
+  for (int k = 0; k < fields->n; k++) {
+    mem_free(fields->field[k]->v);
+    mem_free(fields->field[k]);
+  }
+  fields->n = 0;
+}
+
+void field_fill_many(const struct mesh *mesh, int n,
+                     struct field *const field[]) {
+  double *v[FIELDS_MAX];
+  const struct bc *bc[FIELDS_MAX];
+  for (int k = 0; k < n; k++) v[k] = field[k]->v, bc[k] = field[k]->bc;
+  mesh_fill(mesh, n, v, bc, false);
+}
+
+void field_fill(const struct mesh *mesh, struct field *field) {
+  field_fill_many(mesh, 1, &field);
+}
+
+void field_fill_faces(const struct mesh *mesh, struct field *field) {
+  mesh_fill_faces(mesh, 1, &field->v);
+}

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Making and unmaking a mesh; the parts are in mesh_ghost.c (leaves),
+ * mesh_stencil.c (helper nodes) and mesh_face.c. */
+#include "talus/mesh.h"
+
+#include "builder.h"
+#include "talus/error.h"
+#include "talus/memory.h"
+
+uint64_t mesh_key_span(int level) { return curve_span(level); }
+
+int32_t list_grow(void **list, int32_t *n, int32_t *capacity, size_t size) {
+  if (*n == *capacity) {
+    *capacity = *capacity ? 2 * *capacity : 256;
+    *list = mem_resize(*list, (size_t)*capacity, size);
+  }
+  CHECK(*n < (1 << KIND_SHIFT) - 1, "more than 2^%d nodes on one rank",
+        KIND_SHIFT);
+  return (*n)++;
+}
+
+void request_add(struct builder *b, uint64_t key, int32_t tag, int rank,
+                 int32_t index) {
+  if (b->nrequests == b->request_capacity) {
+    b->request_capacity = b->request_capacity ? 2 * b->request_capacity : 256;
+    b->request =
+        mem_resize(b->request, (size_t)b->request_capacity, sizeof *b->request);
+  }
+  b->request[b->nrequests++] = (struct plan_request){key, tag, rank, index};
+}
+
+int key_rank(const struct builder *b, uint64_t key) {
+  int low = 0, high = b->mesh->nranks - 1;
+  while (low < high) { /* last rank whose first key is <= key */
+    int middle = (low + high + 1) / 2;
+    if (b->first_keys[middle] <= key) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low;
+}
+
+struct mesh *mesh_new(struct forest *forest) {
+  struct mesh *mesh = MEM_NEW(struct mesh, 1);
+  mesh->forest = forest;
+  mesh->revision = forest_revision(forest);
+  mesh->comm = forest_comm(forest);
+  MPI_CHECK(MPI_Comm_rank(mesh->comm, &mesh->rank));
+  MPI_CHECK(MPI_Comm_size(mesh->comm, &mesh->nranks));
+  mesh->level_finest = forest_finest_level(forest);
+  mesh->first_keys = forest_first_keys(forest);
+  mesh->exchange = MEM_NEW(struct mesh_exchange, 1);
+  struct builder b = {.mesh = mesh,
+                      .curve = forest_curve(forest),
+                      .layout = forest_layout(forest),
+                      .first_keys = mesh->first_keys};
+  build_leaves(&b);
+  build_stencils(&b);
+  build_faces(&b);
+  table_end(&b.table);
+  mem_free(b.average);
+  mem_free(b.group_of);
+  mem_free(b.group_leaf);
+  mem_free(b.boundary);
+  mem_free(b.request);
+  return mesh;
+}
+
+void mesh_destroy(struct mesh *mesh) {
+  if (!mesh) return;
+  plan_end(&mesh->exchange->ghost);
+  plan_end(&mesh->exchange->average);
+  plan_end(&mesh->exchange->virtual_node);
+  plan_end(&mesh->exchange->face);
+  void *owned[] = {mesh->exchange,
+                   mesh->x,
+                   mesh->h,
+                   mesh->volume,
+                   mesh->level,
+                   mesh->key,
+                   mesh->stencil,
+                   mesh->face_node,
+                   mesh->face_leaf,
+                   mesh->face_owner,
+                   mesh->face_patch,
+                   mesh->face_h,
+                   mesh->cell_face,
+                   mesh->average_face,
+                   mesh->average_child,
+                   mesh->virtual_leaf,
+                   mesh->virtual_slope,
+                   mesh->virtual_weight,
+                   mesh->boundary_source,
+                   mesh->boundary_patch,
+                   mesh->boundary_h};
+  for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
+  mem_free(mesh);
+}
+
+double mesh_sum(const struct mesh *mesh, double local) {
+  double total = local;
+  if (mesh->nranks > 1) {
+    MPI_CHECK(
+        MPI_Allreduce(&local, &total, 1, MPI_DOUBLE, MPI_SUM, mesh->comm));
+  }
+  return total;
+}
+
+double mesh_max(const struct mesh *mesh, double local) {
+  double total = local;
+  if (mesh->nranks > 1) {
+    MPI_CHECK(
+        MPI_Allreduce(&local, &total, 1, MPI_DOUBLE, MPI_MAX, mesh->comm));
+  }
+  return total;
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Filling: averages, messages, interpolation, messages, boundaries.
+ * The depth is fixed: an average adds up leaves and finer averages, a slope
+ * reads leaves, ghosts and averages only, a boundary node may mirror any of
+ * the others. */
+#include "exchange.h"
+#include "talus/error.h"
+#include "talus/mesh.h"
+
+static void fill_averages(const struct mesh *mesh, double *v) {
+  const int32_t n = mesh->begin_virtual - mesh->begin_average;
+  for (int32_t k = 0; k < n; k++) {
+    const int32_t *child = mesh->average_child[k];
+    double sum = 0;
+    for (int c = 0; c < NCHILD; c++) {
+      if (child[c] >= 0) sum += v[child[c]];
+    }
+    v[mesh->begin_average + k] = sum / NCHILD;
+  }
+}
+
+static void fill_virtuals(const struct mesh *mesh, double *v) {
+  for (int32_t k = 0; k < mesh->nvirtual_local; k++) {
+    double *child = v + mesh->begin_virtual + NCHILD * k;
+    double step[DIM];
+    for (int d = 0; d < DIM; d++) {
+      const int32_t *node = mesh->virtual_slope[k][d];
+      step[d] = mesh->virtual_weight[k][d] * (v[node[1]] - v[node[0]]);
+    }
+    for (int c = 0; c < NCHILD; c++) {
+      double value = v[mesh->virtual_leaf[k]];
+      for (int d = 0; d < DIM; d++) value += c >> d & 1 ? step[d] : -step[d];
+      child[c] = value;
+    }
+  }
+}
+
+static void fill_boundaries(const struct mesh *mesh, double *v,
+                            const struct bc *bc, bool homogeneous) {
+  const int32_t n = mesh->ncells - mesh->begin_boundary;
+  for (int32_t k = 0; k < n; k++) {
+    double value = v[mesh->boundary_source[k]];
+    for (int d = 0; d < DIM; d++) {
+      const int patch = mesh->boundary_patch[k][d];
+      if (patch < 0) continue;
+      double a, b;
+      bc_ghost(&bc[patch], mesh->boundary_h[k], &a, &b);
+      value = a * value + (homogeneous ? 0 : b);
+    }
+    v[mesh->begin_boundary + k] = value;
+  }
+}
+
+void mesh_fill_ghosts(const struct mesh *mesh, int n, double *const v[]) {
+  plan_run(&mesh->exchange->ghost, n, v, 1, false);
+}
+
+void mesh_fill(const struct mesh *mesh, int n, double *const v[],
+               const struct bc *const bc[], bool homogeneous) {
+  enum { MOST = 64 };
+  double *group[MOST];
+  CHECK(n <= MOST, "%d fields filled at once, at most %d", n, MOST);
+  for (int k = 0; k < n; k++) {
+    fill_averages(mesh, v[k]);
+    group[k] = v[k] + mesh->begin_virtual;
+  }
+  plan_run(&mesh->exchange->ghost, n, v, 1, false);
+  plan_run(&mesh->exchange->average, n, v, 1, true);
+  for (int k = 0; k < n; k++) fill_virtuals(mesh, v[k]);
+  plan_run(&mesh->exchange->virtual_node, n, group, NCHILD, false);
+  for (int k = 0; k < n; k++) {
+    fill_boundaries(mesh, v[k], bc[k], homogeneous);
+  }
+}
+
+void mesh_fill_faces(const struct mesh *mesh, int n, double *const v[]) {
+  plan_run(&mesh->exchange->face, n, v, 1, false);
+  const int32_t ncoarse = mesh->nfaces_all - mesh->begin_face_average;
+  for (int k = 0; k < n; k++) {
+    for (int32_t i = 0; i < ncoarse; i++) {
+      double sum = 0;
+      for (int c = 0; c < NCHILD / 2; c++) {
+        sum += v[k][mesh->average_face[i][c]];
+      }
+      v[k][mesh->begin_face_average + i] = sum / (NCHILD / 2);
+    }
+  }
+}

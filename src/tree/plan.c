@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/memory.h"
+
+enum { TAG_PLAN = 71 };
+
+void plan_begin(struct plan *plan, MPI_Comm comm) {
+  memset(plan, 0, sizeof *plan);
+  plan->comm = comm;
+  MPI_CHECK(MPI_Comm_rank(comm, &plan->rank));
+  MPI_CHECK(MPI_Comm_size(comm, &plan->nranks));
+  plan->send_begin = MEM_NEW(int32_t, plan->nranks + 1);
+  plan->recv_begin = MEM_NEW(int32_t, plan->nranks + 1);
+  plan->request = MEM_NEW(MPI_Request, 2 * plan->nranks);
+}
+
+void plan_end(struct plan *plan) {
+  mem_free(plan->send_begin);
+  mem_free(plan->recv_begin);
+  mem_free(plan->send_index);
+  mem_free(plan->recv_index);
+  mem_free(plan->buffer);
+  mem_free(plan->request);
+  memset(plan, 0, sizeof *plan);
+}
+
+static int by_rank(const void *a, const void *b) {
+  const struct plan_request *p = a, *q = b;
+  if (p->rank != q->rank) return p->rank < q->rank ? -1 : 1;
+  if (p->index != q->index) return p->index < q->index ? -1 : 1;
+  return 0;
+}
+
+struct plan_request *plan_ask(struct plan *plan, int64_t n,
+                              struct plan_request *request, int64_t *nasked) {
+  const int nranks = plan->nranks;
+  const int size = (int)sizeof(struct plan_request);
+  int *count = MEM_NEW(int, 4 * nranks), *begin = count + 2 * nranks;
+  int *asked = count + nranks, *asked_begin = begin + nranks;
+  if (n > 0) qsort(request, (size_t)n, sizeof *request, by_rank);
+  plan->recv_index = MEM_NEW(int32_t, n);
+  for (int64_t i = 0; i < n; i++) {
+    count[request[i].rank] += size;
+    plan->recv_begin[request[i].rank + 1]++;
+    plan->recv_index[i] = request[i].index;
+    request[i].rank = plan->rank; /* the receiver sees who asks */
+  }
+  MPI_CHECK(MPI_Alltoall(count, 1, MPI_INT, asked, 1, MPI_INT, plan->comm));
+  for (int r = 0; r < nranks; r++) {
+    plan->send_begin[r + 1] = plan->send_begin[r] + asked[r] / size;
+    plan->recv_begin[r + 1] += plan->recv_begin[r];
+    begin[r] = plan->recv_begin[r] * size;
+    asked_begin[r] = plan->send_begin[r] * size;
+  }
+  *nasked = plan->send_begin[nranks];
+  struct plan_request *out = MEM_NEW(struct plan_request, *nasked);
+  MPI_CHECK(MPI_Alltoallv(request, count, begin, MPI_BYTE, out, asked,
+                          asked_begin, MPI_BYTE, plan->comm));
+  plan->send_index = MEM_NEW(int32_t, *nasked);
+  mem_free(count);
+  return out;
+}
+
+static void pack(const struct plan *plan, int n, double *const v[], int block,
+                 double *out) {
+  for (int r = 0; r < plan->nranks; r++) {
+    for (int k = 0; k < n; k++) {
+      for (int32_t i = plan->send_begin[r]; i < plan->send_begin[r + 1]; i++) {
+        const double *from = v[k] + (int64_t)plan->send_index[i] * block;
+        for (int b = 0; b < block; b++) *out++ = from[b];
+      }
+    }
+  }
+}
+
+static void unpack(const struct plan *plan, int n, double *const v[], int block,
+                   bool add, const double *in) {
+  for (int r = 0; r < plan->nranks; r++) {
+    for (int k = 0; k < n; k++) {
+      for (int32_t i = plan->recv_begin[r]; i < plan->recv_begin[r + 1]; i++) {
+        double *to = v[k] + (int64_t)plan->recv_index[i] * block;
+        for (int b = 0; b < block; b++, in++) {
+          to[b] = add ? to[b] + *in : *in;
+        }
+      }
+    }
+  }
+}
+
+void plan_run(struct plan *plan, int n, double *const v[], int block,
+              bool add) {
+  if (plan->nranks == 1) return;
+  const int64_t each = (int64_t)n * block;
+  const int64_t nsend = plan->send_begin[plan->nranks] * each;
+  const int64_t nrecv = plan->recv_begin[plan->nranks] * each;
+  if (nsend + nrecv > plan->capacity) {
+    plan->capacity = nsend + nrecv;
+    plan->buffer =
+        mem_resize(plan->buffer, (size_t)plan->capacity, sizeof(double));
+  }
+  double *out = plan->buffer, *in = plan->buffer + nsend;
+  int nrequests = 0;
+  for (int r = 0; r < plan->nranks; r++) {
+    int64_t begin = plan->recv_begin[r] * each;
+    int64_t end = plan->recv_begin[r + 1] * each;
+    if (end > begin) {
+      MPI_CHECK(MPI_Irecv(in + begin, (int)(end - begin), MPI_DOUBLE, r,
+                          TAG_PLAN, plan->comm, &plan->request[nrequests++]));
+    }
+  }
+  pack(plan, n, v, block, out);
+  for (int r = 0; r < plan->nranks; r++) {
+    int64_t begin = plan->send_begin[r] * each;
+    int64_t end = plan->send_begin[r + 1] * each;
+    if (end > begin) {
+      MPI_CHECK(MPI_Isend(out + begin, (int)(end - begin), MPI_DOUBLE, r,
+                          TAG_PLAN, plan->comm, &plan->request[nrequests++]));
+    }
+  }
+  MPI_CHECK(MPI_Waitall(nrequests, plan->request, MPI_STATUSES_IGNORE));
+  unpack(plan, n, v, block, add, in);
+}

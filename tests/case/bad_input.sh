@@ -1,0 +1,170 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Whatever is wrong with a case or a command line gives one message that says
+# what and where, exit status 2, and leaves no file. Usage: bad_input.sh BUILD
+set -u
+build=$(cd "$1" && pwd) || exit 1
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+cd "$directory" || exit 1
+mkdir cases work
+failures=0
+
+# A sound case: line 2 is the domain, 4 the grains, 5 the shape.
+good='return { dimension = 2,
+  domain = { size = 4, level = 5 },
+  gravity = { 0, -1 },
+  grains = { density = 1, rheology = { "mu_i", d = 0.05, eta_max = 10 },
+    shape = function(x, y) return math.min(1 - x, 1 - y) end },
+  gas = { density = 1e-3, rheology = { "newtonian", eta = 1e-4 } },
+  boundary = { left = "symmetry", right = "no_slip", bottom = "no_slip",
+    top = { "outflow", pressure = 0 } },
+  output = { stop = 1 } }'
+
+complain() {
+  echo "$1"
+  sed 's/^/  /' output
+  failures=$((failures + 1))
+}
+
+# refuses NAME PATTERN ARGUMENTS...: the program, started in work/, ends with
+# status 2, writes nothing, and its one message matches PATTERN
+refuses() {
+  local name=$1 pattern=$2 status
+  shift 2
+  (cd work && timeout 60 "$build/talus" "$@") > output 2>&1
+  status=$?
+  [ "$status" -eq 2 ] || complain "$name: exit status $status, not 2"
+  [ "$(wc -l < output)" -eq 1 ] || complain "$name: not one line"
+  grep -qE "^talus: error: .*$pattern" output ||
+    complain "$name: the message does not match $pattern"
+  if [ -n "$(ls -A work)" ]; then
+    complain "$name: left $(ls -A work)"
+    rm -rf work
+    mkdir work
+  fi
+}
+
+# bad_case NAME PATTERN TEXT: a whole case
+bad_case() {
+  echo "$3" > "cases/$1.lua"
+  refuses "$1" "$2" run "../cases/$1.lua"
+}
+
+# bad_edit NAME PATTERN FROM TO: the sound case with one thing changed
+bad_edit() {
+  bad_case "$1" "$2" "${good/"$3"/$4}"
+}
+
+echo "$good" > cases/good.lua
+(cd work && "$build/talus" check ../cases/good.lua) > output 2>&1 ||
+  complain "the sound case is refused"
+
+# keys and values of the table
+bad_edit unknown_key \
+  'unknown_key.lua:2: .*domain.levle = 5.*did you mean .level' \
+  'level = 5' 'levle = 5'
+bad_edit unknown_section 'unknown_section.lua:6: .*gass.*`gas`' 'gas =' 'gass ='
+bad_edit missing_key 'missing_key.lua:2: domain.size is missing: a number > 0' \
+  'size = 4, ' ''
+bad_edit wrong_type 'wrong_type.lua:2: domain.size = "4": a number' \
+  'size = 4' 'size = "4"'
+bad_edit not_integer 'not_integer.lua:2: domain.level = 5.5: an integer' \
+  'level = 5' 'level = 5.5'
+bad_edit negative_density \
+  'negative_density.lua:4: grains.density = -1: a number > 0' \
+  'density = 1,' 'density = -1,'
+bad_edit level_40 'level_40.lua:2: domain.level = 40: .*from 1 to 24' \
+  'level = 5' 'level = 40'
+bad_edit nan 'nan.lua:2: domain.size = -?nan: a number > 0' 'size = 4' \
+  'size = 0/0'
+bad_edit infinite 'infinite.lua:9: output.stop = inf: a number > 0' 'stop = 1' \
+  'stop = math.huge'
+bad_edit stop_0 'stop_0.lua:9: output.stop = 0: a number > 0' 'stop = 1' \
+  'stop = 0'
+bad_edit level_min 'level_min.lua:2: domain.level_min = 7 is above' \
+  'level = 5' 'level = 5, level_min = 7'
+bad_edit short_list 'short_list.lua:3: gravity.*a list of 2 numbers' \
+  '{ 0, -1 }' '{ -1 }'
+bad_edit closure 'closure.lua:4: grains.rheology = "mui": .*mu_i' '"mu_i"' \
+  '"mui"'
+bad_edit closure_key 'closure_key.lua:4: .*rheology.mus = 1.*mu_s' 'd = 0.05' \
+  'd = 0.05, mus = 1'
+bad_edit closure_missing 'closure_missing.lua:4: grains.rheology.d is missing' \
+  'd = 0.05, ' ''
+bad_edit boundary 'boundary.lua:7: boundary.left = "symetry": .*symmetry' \
+  'left = "symmetry"' 'left = "symetry"'
+bad_edit periodic 'periodic.lua:7: .*right must be "periodic" too' \
+  'left = "symmetry"' 'left = "periodic"'
+bad_edit no_pressure 'no_pressure.lua:7: .*add boundary.pressure_level' \
+  '{ "outflow", pressure = 0 }' '"no_slip"'
+bad_edit no_side 'no_side.lua:7: boundary.left is missing' \
+  'left = "symmetry", ' ''
+bad_edit patch 'patch.lua:8: boundary.top.*"hole", which boundary.patches' \
+  '{ "outflow", pressure = 0 }' \
+  'function() return "hole" end, patches = { outlet = "outflow" }'
+bad_edit criterion 'criterion.lua:9: adapt\[1\] = "interfase": .*interface' \
+  'output =' 'adapt = { "interfase" }, output ='
+bad_edit tracer 'tracer.lua:9: tracers.pressure: this name is taken' \
+  'output =' 'tracers = { pressure = function() return 1 end }, output ='
+bad_edit dimension 'dimension.lua:1: dimension = 4: .*from 2 to 3' \
+  'dimension = 2' 'dimension = 4'
+
+# Lua
+bad_edit syntax "syntax.lua:2: '=' expected|syntax.lua:2: .*expected" \
+  'size = 4' 'size 4'
+bad_edit runtime "runtime.lua:2: attempt to (perform arithmetic|call)" \
+  'size = 4' 'size = ("x")()'
+bad_edit undefined "undefined.lua:2: 'sise' is not defined" 'size = 4' \
+  'size = sise'
+bad_edit function_fails 'function_fails.lua:5: .*grains.shape\(.*fails' \
+  '1 - y)' '1 - y.z)'
+bad_edit function_nil 'function_nil.lua:5: grains.shape\(.*returned nil' \
+  'return math.min(1 - x, 1 - y)' ''
+bad_edit function_endless 'function_endless.lua:5: .*still running' \
+  'return math.min' 'while true do end return math.min'
+bad_case endless 'endless.lua:1: .*still running' 'while true do end'
+bad_case memory 'memory.lua: .*memory' \
+  'local t = {} for i = 1, 1e9 do t[i] = i end'
+bad_case nothing 'nothing.lua returns nothing, a case must end in' 'local a = 1'
+bad_case number 'number.lua returns number, a case must end in' 'return 1'
+bad_case execute "execute.lua:1: 'os' is not available" \
+  'os.execute("touch written")'
+bad_case open "open.lua:1: 'io' is not available" 'io.open("written", "w")'
+bad_case require_os "require_os.lua:1: 'require' is not available" \
+  'require("os")'
+bad_case declared_twice 'declared_twice.lua:2: .*declared before' \
+  'param("a", 1, "")
+param("a", 1, "")'
+
+refuses check 'level_40.lua:2: domain.level = 40' check ../cases/level_40.lua
+
+# the command line
+echo "local n = param('level', 5, 'finest level')
+param('times', {1, 2}, 'a list')
+param('flag', true, 'a switch')
+${good/level = 5/level = n}" > cases/param.lua
+refuses unknown_override 'levl=6 .*no parameter .levl.*`level`' \
+  run ../cases/param.lua levl=6
+refuses override_type 'level=x on the command line: a number is needed' \
+  run ../cases/param.lua level=x
+refuses override_list 'times=1,x on the command line: a list' \
+  run ../cases/param.lua times=1,x
+refuses override_flag 'flag=1 on the command line: true or false' \
+  run ../cases/param.lua flag=1
+refuses override_range 'param.lua:5: domain.level = 40' \
+  run ../cases/param.lua level=40
+refuses missing_file 'none.lua: No such file' run ../cases/none.lua
+refuses directory_as_case 'cases: Is a directory' run ../cases
+refuses unknown_command 'unknown command rum; did you mean run' rum
+refuses unknown_option 'unknown option --restrat; did you mean --restart' \
+  run ../cases/good.lua --restrat
+refuses option_value '--max-steps x: a number of steps' \
+  run ../cases/good.lua --max-steps x
+refuses no_case 'which case' run
+refuses unwritable "output directory '../cases/good.lua/out'" \
+  run ../cases/good.lua -o ../cases/good.lua/out
+refuses unwritable_proc "output directory '/proc/talus'" \
+  run ../cases/good.lua -o /proc/talus
+
+[ "$failures" -eq 0 ]

@@ -1,0 +1,100 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Snapshots are what their XDMF index says, pictures and film are made, and
+# outlines are compared as documented. Usage: plot.sh BUILD
+set -u
+root=$(pwd)
+build=$(cd "$1" && pwd) || exit 1
+export TALUS_TOOLS=$root/tools
+for python in "${PYTHON:-python3}" python3 /usr/bin/python3; do
+  "$python" -c 'import h5py, matplotlib' 2> /dev/null && break
+  python=
+done
+[ -n "$python" ] || { echo "no Python with h5py and matplotlib"; exit 77; }
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+cd "$directory" || exit 1
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+
+set -e
+timeout 120 "$build/talus2d" run "$root/examples/column.lua" level=7 stop=3 \
+  times=0.66,0.95 -o column --quiet
+timeout 120 mpirun --oversubscribe -n 2 "$build/talus3d" run \
+  "$root/examples/box3d.lua" level=4 stop=0.5 -o box --quiet
+
+# Index and files agree; every leaf is there; the cells fill the box.
+cat > check.py << 'PYTHON'
+import sys
+import xml.etree.ElementTree as xml
+import h5py
+import numpy as np
+
+directory, dimension, volume = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
+grids = xml.parse(f"{directory}/snapshots.xdmf").getroot().findall(
+    "Domain/Grid/Grid")
+times = [float(g.find("Time").get("Value")) for g in grids]
+assert len(times) > 1 and times == sorted(set(times)), times
+for grid in grids:
+    for item in grid.iter("DataItem"):
+        name, path = item.text.split(":")
+        with h5py.File(f"{directory}/{name}") as f:
+            size = [int(n) for n in item.get("Dimensions").split()]
+            assert list(f[path].shape) == size, (name, path)
+            assert f[path].dtype.itemsize == int(item.get("Precision")), path
+            assert f[path].attrs["unit"] and f[path].attrs["title"], path
+with h5py.File(f"{directory}/{name}") as f:
+    assert f.attrs["version"] and f.attrs["time"] == times[-1]
+    assert f["parameters"].attrs["gravity"]
+    x, cells = f["vertices"][:], f["cells"][:]
+    assert cells.max() == len(x) - 1
+    edge = x[cells].max(axis=1) - x[cells].min(axis=1)
+    assert abs(np.prod(edge, axis=1).sum() / volume - 1) < 1e-12
+    assert np.allclose(edge, edge[:, :1])
+    assert f["velocity"].shape == (len(cells), 3)
+    assert 0 < (f["fraction"] * np.prod(edge, axis=1)).sum() < volume
+PYTHON
+"$python" check.py column 2 1024
+edge=$(sed -n 's/^domain.size,\([^,]*\),.*/\1/p' box/parameters.csv)
+"$python" check.py box 3 "$(awk -v e="$edge" 'BEGIN { print e^3 }')"
+
+# Pictures
+for run in column box; do
+  timeout 120 "$build/talus" plot $run > output
+  for name in outlines.png fields-final.png history.png film.gif; do
+    grep -q "^$run/$name$" output || { echo "$run: no $name"; exit 1; }
+    [ "$(wc -c < $run/$name)" -gt 5000 ] || { echo "$run/$name is small"; exit 1; }
+  done
+done
+if "$build/talus" plot nowhere 2> output; then
+  echo "a run that is not there was drawn"
+  exit 1
+fi
+
+# Outlines: known areas, then the run itself.
+cat > compare.py << 'PYTHON'
+import sys
+import numpy as np
+sys.path.insert(0, sys.argv[1])
+import run_data
+
+x = np.linspace(0.05, 9.95, 100)
+h = np.maximum(0, 4 - x)
+# the same outline, and one that is only higher by a factor
+assert run_data.compare(x, h, x, h)[0] < 1e-12
+difference, scale = run_data.compare(x, h, x, 2 * h)
+assert difference < 1e-12 and abs(scale - 0.5) < 1e-12
+# two boxes of equal area, moved by a quarter of their width
+a = ((x > 1) & (x < 5)).astype(float)
+b = ((x > 2) & (x < 6)).astype(float)
+assert abs(run_data.compare(x, a, x, b)[0] - 0.5) < 1e-3
+assert abs(run_data.parse_scale("sqrt(6.25)", {}) - 2.5) < 1e-12
+assert abs(run_data.parse_scale(None, {"a": "4"}) - 2) < 1e-12
+PYTHON
+"$python" compare.py "$root/tools"
+"$python" "$root/tools/compare_outline.py" column --reference \
+  "$root/examples/reference/contact_dynamics_a6.26.csv" > output
+# level 7 is coarse; only far off if something is wrong
+awk '$1 == "mean" { found = $2 < 0.25 } END { exit !found }' output || {
+  cat output
+  exit 1
+}

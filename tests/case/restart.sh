@@ -1,0 +1,159 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A run that is stopped and goes on writes what one in one piece writes; a
+# checkpoint that does not fit is refused; a full disk costs no checkpoint.
+# Usage: restart.sh BUILD
+set -u
+root=$(pwd)
+build=$(cd "$1" && pwd) || exit 1
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+cd "$directory" || exit 1
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+column="$root/examples/column.lua level=7 stop=2 times=0.1,0.66"
+box="$root/examples/box3d.lua level=4 stop=0.5"
+failures=0
+
+complain() {
+  echo "$1"
+  sed 's/^/  /' output
+  failures=$((failures + 1))
+}
+
+# talus RANKS PROGRAM ARGUMENTS...
+talus() {
+  local ranks=$1 program=$2
+  shift 2
+  if [ "$ranks" -eq 1 ]; then
+    timeout 120 "$build/$program" "$@" > output 2>&1
+  else
+    timeout 120 mpirun --oversubscribe -n "$ranks" "$build/$program" "$@" \
+      > output 2>&1
+  fi
+}
+
+# must WORDS...: a run that has to succeed
+must() {
+  talus "$@" || complain "$*: exit status $?"
+}
+
+# series DIR: series.csv without the column of wall-clock time
+series() {
+  cut -d, -f1-13,15- "$1/series.csv"
+}
+
+# same NAME DIR DIR: both tables agree to the last bit
+same() {
+  series "$2" > a
+  series "$3" > b
+  diff a b > output || complain "$1: series.csv differs"
+  diff "$2/profile.csv" "$3/profile.csv" > output ||
+    complain "$1: profile.csv differs"
+  diff "$2/snapshots.xdmf" "$3/snapshots.xdmf" > output ||
+    complain "$1: snapshots.xdmf differs"
+}
+
+# last DIR COLUMN: value in the last row of series.csv
+last() {
+  tail -n 1 "$1/series.csv" | cut -d, -f"$2"
+}
+
+# refused PATTERN WORDS...: exit status 2 and a message
+refused() {
+  local pattern=$1
+  shift
+  talus "$@"
+  local status=$?
+  [ "$status" -eq 2 ] || complain "$*: exit status $status, not 2"
+  grep -qE "^talus: error: .*$pattern" output ||
+    complain "$*: the message does not match $pattern"
+}
+
+# In pieces, on as many ranks as before. A crash after the checkpoint leaves
+# rows and a snapshot from later times, which a restart repeats.
+for n in 1 2; do
+  must $n talus2d run $column -o whole-$n --quiet
+  must $n talus2d run $column -o parts-$n --quiet --max-steps 7
+  cp parts-$n/checkpoint.h5 saved
+  must $n talus2d run $column -o parts-$n --quiet --restart --max-steps 8
+  cp saved parts-$n/checkpoint.h5
+  must $n talus2d run $column -o parts-$n --quiet --restart
+  same "column on $n" whole-$n parts-$n
+done
+for n in 1 3; do
+  must $n talus3d run $box -o box-$n --quiet
+  must $n talus3d run $box -o pieces-$n --quiet --max-steps 3
+  must $n talus3d run $box -o pieces-$n --quiet --restart
+  same "box on $n" box-$n pieces-$n
+done
+cp -r parts-1 again
+must 1 talus2d run $column -o again --quiet --restart
+same "nothing left to do" whole-1 again
+
+# On other ranks it goes on to the same front within a cell, which is 1/4.
+for pair in "1 2" "2 1" "1 3"; do
+  set -- $pair
+  rm -rf other
+  must "$1" talus2d run $column -o other --quiet --max-steps 7
+  must "$2" talus2d run $column -o other --quiet --restart
+  [ "$(last other 2)" = 2 ] || complain "$1 to $2 ranks: not at the end"
+  awk -v a="$(last other 5)" -v b="$(last whole-1 5)" \
+    'BEGIN { exit !(a - b < 0.25 && b - a < 0.25) }' ||
+    complain "$1 to $2 ranks: front $(last other 5), not $(last whole-1 5)"
+done
+
+# A signal ends the step, and says how to go on.
+must 1 talus2d run $column stop=1e4 -o signal --max-walltime 0.2
+grep -q -e --restart output || complain "no word of how to go on"
+for signal in INT TERM; do
+  rm -rf signal
+  "$build/talus2d" run $column stop=1e4 -o signal --max-walltime 30 \
+    > output 2>&1 &
+  pid=$!
+  for _ in $(seq 200); do
+    [ -e signal/series.csv ] && [ "$(wc -l < signal/series.csv)" -gt 3 ] && break
+    sleep 0.02
+  done
+  kill -$signal $pid
+  wait $pid
+  status=$?
+  [ $status -eq 0 ] || complain "SIG$signal: exit status $status"
+  grep -q "SIG$signal" signal/run.log || complain "SIG$signal is not in run.log"
+  step=$(last signal 1)
+  must 1 talus2d run $column stop=1e4 -o signal --quiet --restart --max-steps 2
+  [ "$(last signal 1)" -eq $((step + 2)) ] || complain "SIG$signal: went nowhere"
+done
+
+# What does not fit is refused, and nothing is touched.
+cp -r parts-1 kept
+refused "another size" 1 talus2d run $column size=16 -o kept --restart
+refused "another size" 2 talus2d run $column size=16 -o kept --restart
+refused "another dimension" 1 talus3d run $box -o kept --restart
+refused "missing or damaged" 1 talus2d run $column -o nowhere --restart
+[ -e nowhere ] && complain "nowhere was made"
+head -c 3000 parts-1/checkpoint.h5 > kept/checkpoint.h5
+refused "missing or damaged" 1 talus2d run $column -o kept --restart
+echo text > kept/checkpoint.h5
+refused "missing or damaged" 2 talus2d run $column -o kept --restart
+cmp -s kept/series.csv parts-1/series.csv || complain "series.csv was touched"
+cp parts-1/checkpoint.h5 kept/
+sed -i '1s/.*/step,other/' kept/series.csv
+refused "other columns" 1 talus2d run $column -o kept --restart
+
+# A disk that takes no more: status 4, the words of the system, and the last
+# checkpoint is whole. A limit on the size of files does for a full disk.
+must 1 talus2d run $column -o full --quiet --max-steps 3
+cp full/checkpoint.h5 saved
+(
+  trap '' XFSZ
+  ulimit -f 30
+  talus 1 talus2d run $column -o full --restart --max-steps 1
+)
+status=$?
+[ $status -eq 4 ] || complain "full disk: exit status $status, not 4"
+grep -q 'fatal: .*File too large' output || complain "full disk: no message"
+cmp -s saved full/checkpoint.h5 || complain "full disk: checkpoint is lost"
+must 1 talus2d run $column -o full --quiet --restart
+same "after a full disk" whole-1 full
+
+[ "$failures" -eq 0 ]

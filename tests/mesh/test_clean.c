@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/clean.h"
+
+#include <check.h>
+#include <stdlib.h>
+
+#include "grid.h"
+
+/* Random face velocities of size 1, closed or open at the top, become
+ * solenoidal to round-off over h. */
+static double cleaned(int trees, bool periodic, bool with_opening) {
+  struct forest *forest = grid_new(MPI_COMM_WORLD, trees, periodic, 2, 5);
+  struct mesh *mesh = mesh_new(forest);
+  struct clean *clean = clean_new(mesh);
+  double *u_f = MEM_NEW(double, mesh->nfaces_all);
+  bool open[MESH_MAX_PATCHES] = {false};
+  open[NFACE - 1] = with_opening;
+  srand(3 + (unsigned)mesh->rank);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int patch = mesh->face_patch[f];
+    u_f[f] = patch >= 0 && !open[patch] ? 0 : rand() / (double)RAND_MAX;
+  }
+  clean_face_velocity(clean, mesh, open, u_f);
+  double most = 0, h = 1;
+  for (int32_t i = 0; i < mesh->nleaves; i++) h = fmin(h, mesh->h[i]);
+  for (int32_t f = 0; f < mesh->nfaces; f++) most = fmax(most, fabs(u_f[f]));
+  double div = clean_divergence(mesh, u_f) * -mesh_max(mesh, -h);
+  most = mesh_max(mesh, most);
+  mem_free(u_f);
+  clean_destroy(clean);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+  return div / most;
+}
+
+START_TEST(divergence_vanishes_to_round_off) {
+  double left = cleaned(1 + _i / 4, _i & 1, _i & 2);
+  ck_assert_double_le(left, 1e-14);
+}
+END_TEST
+
+START_TEST(a_solenoidal_field_is_left_alone) {
+  struct forest *forest = grid_new(MPI_COMM_WORLD, 1, true, 2, 5);
+  struct mesh *mesh = mesh_new(forest);
+  struct clean *clean = clean_new(mesh);
+  double *u_f = MEM_NEW(double, mesh->nfaces_all);
+  const bool open[MESH_MAX_PATCHES] = {false};
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      u_f[f] = 0.3 + d;
+    }
+  }
+  clean_face_velocity(clean, mesh, open, u_f);
+  double most = 0;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      most = fmax(most, fabs(u_f[f] - 0.3 - d));
+    }
+  }
+  ck_assert_double_le(mesh_max(mesh, most), 1e-14);
+  mem_free(u_f);
+  clean_destroy(clean);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
+Suite *clean_suite(void) {
+  Suite *suite = suite_create("clean");
+  TCase *tc = tcase_create("clean");
+  tcase_add_loop_test(tc, divergence_vanishes_to_round_off, 0, 8);
+  tcase_add_test(tc, a_solenoidal_field_is_left_alone);
+  suite_add_tcase(suite, tc);
+  return suite;
+}

@@ -1,0 +1,143 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs groups of tests and adds them up. The last line is `N passed, N failed`.
+#
+#   tests/run.sh BUILD GROUP...
+#
+#   format    clang-format 14 has nothing to change
+#   includes  tools/check_includes.py
+#   unit      BUILD/{2d,3d}/unit
+#   mesh      BUILD/{2d,3d}/mesh on 1, 2 and 3 ranks
+#   case      tests/case/*.sh BUILD; silent if all is well, 77 means skipped
+#   examples  every examples/*.lua at low resolution against its `expect`
+#   small     a few steps of examples/column.lua on 1 and 2 ranks
+#
+# Environment: RANKS="1 2 3" for mesh; TEST_TIMEOUT, seconds for one program;
+# CK_RUN_SUITE=vof runs one suite only.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+
+build=$1
+shift
+passed=0
+failed=0
+limit=${TEST_TIMEOUT:-300}
+output=$(mktemp)
+trap 'rm -f "$output"' EXIT
+
+# The cores may be busy with others, which is no failure.
+export CK_DEFAULT_TIMEOUT=${CK_DEFAULT_TIMEOUT:-60}
+# What libraries leak at the end of a process is not ours to mend; memory.c
+# counts our own blocks.
+export ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS:-}
+export UBSAN_OPTIONS=print_stacktrace=1:${UBSAN_OPTIONS:-}
+
+# report NAME STATUS PASSED FAILED: one line, and the output if it failed
+report() {
+  local name=$1 status=$2 good=$3 bad=$4
+  # A program that dies before its summary has failed once.
+  [ "$status" -ne 0 ] && [ "$bad" -eq 0 ] && bad=1
+  passed=$((passed + good))
+  failed=$((failed + bad))
+  printf '%-28s %4d passed, %d failed\n' "$name" "$good" "$bad"
+  [ "$bad" -eq 0 ] && return
+  [ "$status" -eq 124 ] && echo "  timed out after $limit s"
+  sed 's/^/  /' "$output" | tail -n 60
+}
+
+# run_suite NAME COMMAND...: a program of Check suites
+run_suite() {
+  local name=$1 status counts
+  shift
+  timeout "$limit" "$@" > "$output" 2>&1
+  status=$?
+  counts=$(sed -n \
+    's/^[0-9]*%: Checks: \([0-9]*\), Failures: \([0-9]*\), Errors: \([0-9]*\)$/\1 \2 \3/p' \
+    "$output" | tail -n 1)
+  read -r checks failures errors <<< "${counts:-0 0 0}"
+  report "$name" "$status" $((checks - failures - errors)) \
+    $((failures + errors))
+}
+
+# run_one NAME COMMAND...: a program that is one test
+run_one() {
+  local name=$1 status
+  shift
+  if [ "$(type -t "$1")" = function ]; then
+    "$@" > "$output" 2>&1
+  else
+    timeout "$limit" "$@" > "$output" 2>&1
+  fi
+  status=$?
+  if [ "$status" -eq 77 ]; then
+    printf '%-28s skipped: %s\n' "$name" "$(tail -n 1 "$output")"
+  elif [ "$status" -eq 0 ]; then
+    report "$name" 0 1 0
+  else
+    report "$name" "$status" 0 1
+  fi
+}
+
+
+# Names the files that `make format` would change, fails if there are any.
+find_unformatted() {
+  find include src tests -name '*.[ch]' -exec clang-format-14 --dry-run {} + \
+    2>&1 | sed -n 's/^\([^:]*\):.*Wclang-format.*/make format: \1/p' | sort -u |
+    grep . && return 1
+  return 0
+}
+
+group_format() {
+  if ! command -v clang-format-14 > /dev/null; then
+    echo "format: skipped, clang-format-14 is not installed"
+    return
+  fi
+  run_one format find_unformatted
+}
+
+group_includes() {
+  run_one includes "${PYTHON:-python3}" tools/check_includes.py
+}
+
+group_unit() {
+  local d
+  for d in 2d 3d; do run_suite "unit $d" "$build/$d/unit"; done
+}
+
+group_mesh() {
+  local d n
+  for d in 2d 3d; do
+    for n in ${RANKS:-1 2 3}; do
+      run_suite "mesh $d on $n" \
+        mpirun --oversubscribe -n "$n" "$build/$d/mesh"
+    done
+  done
+}
+
+group_case() {
+  local f
+  for f in tests/case/*.sh; do
+    [ -e "$f" ] && run_one "case $(basename "$f" .sh)" bash "$f" "$build"
+  done
+}
+
+group_examples() {
+  local f
+  for f in examples/*.lua; do
+    [ -e "$f" ] && run_one "example $(basename "$f" .lua)" \
+      "${PYTHON:-python3}" tools/check_example.py "$build" "$f"
+  done
+}
+
+group_small() {
+  local n
+  for n in 1 2; do
+    run_one "column on $n" mpirun --oversubscribe -n "$n" "$build/talus2d" \
+      run examples/column.lua level=6 --max-steps 20 --quiet \
+      -o "$build/column-$n"
+  done
+}
+
+for group in "$@"; do "group_$group"; done
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads what a run of talus leaves in its directory (design.md, section 7)."""
+import csv
+import math
+import pathlib
+import re
+
+import numpy as np
+
+FRACTION, VELOCITY = "fraction", "velocity"  # names of fields in snapshots
+
+
+def read_parameters(directory):
+    """{name: text} of parameters.csv; of two rows with one name the first."""
+    path = pathlib.Path(directory) / "parameters.csv"
+    if not path.exists():
+        return {}
+    with open(path, newline="", encoding="utf-8") as f:
+        parameters = {}
+        for row in list(csv.reader(f))[1:]:
+            if len(row) >= 2:
+                parameters.setdefault(row[0], row[1])
+    return parameters
+
+
+def number(parameters, name, default=None):
+    """A parameter as a number, `default` if missing or no number."""
+    try:
+        return float(parameters[name])
+    except (KeyError, ValueError):
+        return default
+
+
+def read_table(path):
+    """{column: array} of a csv file of numbers; a row cut short is left out."""
+    with open(path, newline="", encoding="utf-8") as f:
+        rows = list(csv.reader(f))
+    header, rows = rows[0], [r for r in rows[1:] if len(r) == len(rows[0])]
+    data = np.array(rows, dtype=float).reshape(len(rows), len(header))
+    return {name: data[:, k] for k, name in enumerate(header)}
+
+
+def read_series(directory):
+    return read_table(pathlib.Path(directory) / "series.csv")
+
+
+def read_profiles(directory):
+    """[(time, x, height)] in order of time. In 3D the row of columns along x
+    that holds the highest one."""
+    table = read_table(pathlib.Path(directory) / "profile.csv")
+    profiles = []
+    for time in np.unique(table["time"]):
+        here = table["time"] == time
+        if "y" in table:
+            peak = np.argmax(np.where(here, table["height"], -1))
+            here &= table["y"] == table["y"][peak]
+        x, height = table["x"][here], table["height"][here]
+        order = np.argsort(x)
+        profiles.append((time, x[order], height[order]))
+    return profiles
+
+
+class Reference:
+    """Outlines to compare with: a csv file with lines of comment (#), a header
+    `x,t=0.66,...` and a row per x."""
+
+    def __init__(self, path):
+        self.name = pathlib.Path(path).stem.replace("_", " ")
+        with open(path, encoding="utf-8") as f:
+            lines = f.read().splitlines()
+        self.comments = [s[1:].strip() for s in lines if s.startswith("#")]
+        rows = list(csv.reader(s for s in lines
+                               if s.strip() and not s.startswith("#")))
+        self.times = [float(re.sub(r"^t\s*=\s*", "", s)) for s in rows[0][1:]]
+        data = np.array(rows[1:], dtype=float)
+        self.x, self.heights = data[:, 0], data[:, 1:].T
+
+    def at(self, time, tolerance=5e-3):
+        """The outline at a time, or None if there is none within a relative
+        `tolerance`."""
+        k = int(np.argmin(np.abs(np.array(self.times) - time)))
+        close = abs(self.times[k] - time) <= tolerance * max(time, 1e-9)
+        return self.heights[k] if close else None
+
+
+def find_reference(directory, parameters):
+    """The file that the parameter `reference` names, or None. Looked for as it
+    stands, beside the run, and in the examples."""
+    name = parameters.get("reference", "")
+    if not name:
+        return None
+    here = pathlib.Path(__file__).resolve().parent
+    for base in (pathlib.Path("."), pathlib.Path(directory),
+                 pathlib.Path(directory).resolve().parent,
+                 here.parent / "examples"):
+        if (base / name).is_file():
+            return base / name
+    return None
+
+
+def parse_scale(text, parameters):
+    """A length of time: a number, sqrt(number), or None for the default
+    sqrt(a), a being the parameter of that name (the reference counts in
+    sqrt(H0/g), the run in sqrt(L0/g), H0 = a L0)."""
+    if text is None:
+        return math.sqrt(number(parameters, "a", 1.0))
+    match = re.fullmatch(r"\s*sqrt\((.*)\)\s*", text)
+    return math.sqrt(float(match.group(1))) if match else float(text)
+
+
+def integral(y, x):
+    return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x)))
+
+
+def compare(x, height, reference_x, reference_height):
+    """Symmetric difference of two outlines as a part of the area, with the
+    heights of the reference scaled so that both have the same area.
+
+    Both are taken as straight between their points and 0 beyond the last.
+    Returns (difference, scale)."""
+    low = min(x[0], reference_x[0])
+    high = max(x[-1], reference_x[-1])
+    step = min(np.min(np.diff(x)), np.min(np.diff(reference_x))) / 4
+    fine = np.linspace(low, high, int(math.ceil((high - low) / step)) + 1)
+    h = np.interp(fine, x, height, right=0)
+    r = np.interp(fine, reference_x, reference_height, right=0)
+    scale = integral(h, fine) / integral(r, fine)
+    difference = integral(np.abs(h - scale * r), fine) / integral(h, fine)
+    return difference, scale
+
+
+class Snapshot:
+    """One snapshot-*.h5: leaves and the fields on them."""
+
+    def __init__(self, path):
+        import h5py
+
+        with h5py.File(path, "r") as f:
+            vertices, cells = f["vertices"][:], f["cells"][:]
+            self.time = float(f.attrs["time"])
+            self.step = int(f.attrs["step"])
+            names = _text(f.attrs["fields"]).split()
+            self.fields = {name: f[name][:] for name in names}
+            self.units = {n: _text(f[n].attrs["unit"]) for n in names}
+            self.titles = {n: _text(f[n].attrs["title"]) for n in names}
+            self.level = f["level"][:]
+        self.dimension = vertices.shape[1]
+        self.nleaves = len(cells)
+        self.low = vertices[cells[:, 0]]
+        self.high = vertices[cells[:, 2 if self.dimension == 2 else 6]]
+
+    def slice(self):
+        """In 3D the leaves cut by a plane of constant y, as a snapshot of 2D:
+        the plane through the heap's highest point next to its axis."""
+        if self.dimension == 2:
+            return self
+        grains = self.fields[FRACTION] > 0.5 if FRACTION in self.fields else None
+        top = self.high[:, 2].copy()
+        if grains is not None and grains.any():
+            top[~grains] = -np.inf
+        peak = int(np.argmax(top))
+        y = 0.5 * (self.low[peak, 1] + self.high[peak, 1])
+        cut = (self.low[:, 1] <= y) & (y < self.high[:, 1])
+        flat = Snapshot.__new__(Snapshot)
+        flat.__dict__.update(self.__dict__)
+        flat.dimension = 2
+        flat.low, flat.high = self.low[cut][:, ::2], self.high[cut][:, ::2]
+        flat.level = self.level[cut]
+        flat.fields = {n: v[cut] for n, v in self.fields.items()}
+        if VELOCITY in flat.fields:
+            flat.fields[VELOCITY] = flat.fields[VELOCITY][:, [0, 2, 1]]
+        return flat
+
+    def box_of_grains(self, part=0.999):
+        """[x0, x1, z0, z1] of all but the outermost grains."""
+        c = self.fields.get(FRACTION)
+        low, high = self.low, self.high
+        if c is None or not (c > 0.5).any():
+            return [low[:, 0].min(), high[:, 0].max(),
+                    low[:, 1].min(), high[:, 1].max()]
+        box = []
+        keep = c > 0.5
+        weight = (c * np.prod(high - low, axis=1))[keep]
+        for d in range(2):
+            order = np.argsort(high[keep, d])
+            sum_ = np.cumsum(weight[order])
+            last = order[np.searchsorted(sum_, part * sum_[-1])]
+            box += [low[keep, d].min(), high[keep, d][last]]
+        return box
+
+    def sample(self, values, window, spacing):
+        """Values of the leaves on a raster of the window [x0, x1, z0, z1]:
+        (x, z, array [nz][nx]) at the centres of squares of edge `spacing`."""
+        nx = max(1, int(round((window[1] - window[0]) / spacing)))
+        nz = max(1, int(round((window[3] - window[2]) / spacing)))
+        out = np.full((nz, nx), np.nan)
+        origin = np.array([window[0], window[2]])
+        begin = np.rint((self.low - origin) / spacing).astype(int)
+        end = np.rint((self.high - origin) / spacing).astype(int)
+        seen = ((end > 0) & (begin < [nx, nz])).all(axis=1)
+        # a leaf smaller than the raster still colours its own square
+        end = np.maximum(end, begin + 1)
+        begin = np.maximum(begin, 0)
+        for i in np.nonzero(seen)[0]:
+            out[begin[i, 1]:end[i, 1], begin[i, 0]:end[i, 0]] = values[i]
+        x = window[0] + spacing * (np.arange(nx) + 0.5)
+        z = window[2] + spacing * (np.arange(nz) + 0.5)
+        return x, z, out
+
+
+def _text(value):
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def find_snapshots(directory):
+    return sorted(pathlib.Path(directory).glob("snapshot-*.h5"))
