@@ -7,33 +7,41 @@
  * array of slots, level after level, within a level the red ones (even sum
  * of integer coordinates) before the black ones, each in curve order.
  *
- * On it lives the two-point operator, a symmetric M-matrix without helper
- * nodes,
- *   (A e)_i = m_i e_i - sum_f w_if (e_n(f) - e_i),
- *   w = alpha area / distance, the distance being h between nodes of one
- *   size and 1.5 h_fine across a jump of level,
- * for velocities with the stress of the transposed gradient added (see
- * viscous.h). The coefficient of a merged node's side is the mean of its
- * children's sides (parallel conductors), so that coarse operators are the
- * rediscretised ones.
+ * On a level lives the two-point operator
+ *   (A e)_i = m_i e_i - sum_f w_if (e_n(f) - e_i),  w = alpha area / h,
+ * for velocities with the stress of the transposed gradient added (viscous.h).
+ * Beyond a face that touches a coarser leaf, n is a virtual child of that
+ * leaf, interpolated linearly as on the mesh. The coefficient of a merged
+ * node's side is the mean of its children's sides (parallel conductors), so
+ * that coarse operators are the rediscretised ones.
  *
  * One cycle approximates e = A^-1 r (r integrated over cells): on each level
- * from the finest, red-black Gauss-Seidel from zero, then
+ * from the finest, two sweeps of Gauss-Seidel from zero, virtual children
+ * being 0, then
  *   r_parent = sum over children (r - A e),   r_coarse leaf += w e_fine
- * across jumps (conservative); conjugate gradients on the trees; on the way
- * up
+ * (conservative); conjugate gradients on the trees; on the way up
  *   e_child += e_P + 1/4 sum_d (e_N(d) - e_P),  N the parent's neighbour on
  *   the child's side,
- * and Gauss-Seidel again, neighbours across a jump being valid by then.
+ * and two sweeps again, virtual children being valid by then. The colours
+ * are red and black; for velocities, which are coupled across edges, each
+ * child number is one. So the result depends on neither the order of nodes
+ * nor the number of ranks.
+ *
+ * What was tried and left: piecewise constant prolongation (Poisson the same,
+ * viscous 10 % more iterations), linear restriction (diverges beyond a
+ * contrast of 100), harmonic coarse coefficients (the same), conductances
+ * over 1.5 h across jumps of level (10 % more), W cycles (no flatter), one
+ * sweep (30 % more iterations for 25 % less time each), extra sweeps where
+ * coefficients jump (20 % fewer, for as much time), velocity components
+ * uncoupled (twice the iterations at a contrast of 1e4, none converge at
+ * 1e8).
  *
  * Parallel: the children of a node belong to the rank that holds the curve
  * position of the node's first corner, whoever has the leaves; levels of few
  * nodes are gathered on rank 0. Message plans are made once.
  *
  * Sources: [brandt_1977] for the composite grid, [wesseling_1988] for
- * cell-centred transfer; that Gauss-Seidel couples the velocity components
- * and that GCR works in the norm |D^-1 r| (krylov.h) are what keeps large
- * contrasts cheap: see the table in viscous.h.
+ * cell-centred transfer.
  */
 #ifndef TALUS_HIERARCHY_H
 #define TALUS_HIERARCHY_H

@@ -30,6 +30,9 @@ struct krylov_system {
   int32_t n;
   int nparts;
   void *context;
+  /* Called once before the first iteration, if there is any. It makes M and
+   * the weights. Collective. */
+  void (*prepare)(void *context);
   /* z = M r, a cheap approximation of A^-1 r. Collective. */
   void (*precondition)(void *context, const double *r, double *z);
   /* q = A z. Collective. */

@@ -9,11 +9,11 @@
  * rho_cc the density of cc; u^up is the upwind velocity with a limited slope.
  * Cut leaves have no slope: nearly all their grains may leave in one sweep,
  * and what stays behind must keep a velocity between those around it. A
- * uniform velocity is kept to round-off whatever the density ratio. A face next to a band leaf
- * carries this one flux; the pure leaf on its other side takes it as
- *   u* = u - dt/(h rho) [M u^up - M u]_d
- * and has its other faces served by the Bell-Colella-Glaz step
- * (advection.h), so that momentum crosses each face once.
+ * uniform velocity is kept to round-off whatever the density ratio. A face next
+ * to a band leaf carries this one flux; the pure leaf on its other side takes
+ * it as u* = u - dt/(h rho) [M u^up - M u]_d and has its other faces served by
+ * the Bell-Colella-Glaz step (advection.h), so that momentum crosses each face
+ * once.
  */
 #ifndef TALUS_MOMENTUM_H
 #define TALUS_MOMENTUM_H
@@ -40,16 +40,15 @@ struct momentum_flux {
 /* Fluxes of the sweep along d. c before the sweep; flux: of c (vof_flux);
  * u[e] filled. Collective. */
 void momentum_flux(const struct mesh *mesh, int d, double dt,
-                   const double density[2], const double *u_f,
-                   const double *c, const double *flux, const double *band, double *const u[DIM],
+                   const double density[2], const double *u_f, const double *c,
+                   const double *flux, const double *band, double *const u[DIM],
                    struct momentum_flux *out);
 
 /* Update of u in the leaves the fluxes touch, c_old: before the sweep;
  * density[0]: grains, [1]: gas. */
 void momentum_update(const struct mesh *mesh, int d, double dt,
                      const double density[2], const double *u_f,
-                     const double *c_old, const double *cc,
-                     const double *band, const struct momentum_flux *flux,
-                     double *const u[DIM]);
+                     const double *c_old, const double *cc, const double *band,
+                     const struct momentum_flux *flux, double *const u[DIM]);
 
 #endif

@@ -44,6 +44,8 @@
 #ifndef TALUS_PLANE_H
 #define TALUS_PLANE_H
 
+#include <stdbool.h>
+
 /* Cells of a stencil that reaches one cell in every direction, 3^DIM. */
 enum { PLANE_STENCIL = DIM == 2 ? 9 : 27 };
 
@@ -122,7 +124,11 @@ void plane_centroid(const double n[DIM], double alpha, double x[DIM]);
  * bit for bit, a stencil with its axes exchanged the exchanged normal to
  * round-off. n = 0 for a uniform stencil and for one with no preferred
  * direction.
+ *
+ * known: false for cells that the fit leaves out, those beyond a wall; their c
+ * (a mirror image, say) then only helps to find a start. NULL: all are known.
  */
-void plane_normal(const double c[PLANE_STENCIL], double n[DIM]);
+void plane_normal(const double c[PLANE_STENCIL],
+                  const bool known[PLANE_STENCIL], double n[DIM]);
 
 #endif

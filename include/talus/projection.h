@@ -22,7 +22,7 @@ struct hierarchy;
 struct projection {
   const struct mesh *mesh;
   struct hierarchy *hierarchy;
-  const double *rho;       /* [ncells] density, filled */
+  const double *rho;       /* [>= nleaves + nghosts] density */
   const double *alpha_f;   /* [nfaces_all], 0 on closed patches */
   const double *gravity_f; /* [nfaces_all], 0 on closed patches */
   const struct bc *bc;     /* of the pressure, [MESH_MAX_PATCHES] */

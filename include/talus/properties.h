@@ -15,13 +15,14 @@
  *   the densities of the two halves; at a wall dp/dn = rho g_n.
  *
  * Gravity on faces is balanced by the pressure where the surface lies, not
- * where the face does. With p = p' + rho g.x the force that is left, -[rho]
- * (g.x_S) grad c with x_S on the surface, is a gradient for a surface at
- * rest, so it is discretised as the gradient of p is; in terms of p itself,
- *   a_f = g_d + (c_1 - c_0)/h [rho]/rho_f g.(x_f - x_S),
- * c_0, c_1 at the nodes of the face, x_f half-way between them, x_S the mean
- * of the centroids of the planes in its leaves. A flat bed tilted with its
- * gravity is then at rest to the accuracy of the planes.
+ * where the face does. With p = p' + W, W = rho g.(x - Z), what is left of
+ * gravity is -[rho] g.(x_S - Z) grad c with x_S on the surface, a gradient for
+ * a surface at rest. So it is discretised as that of p is, over levels too:
+ *   a_f = ((W_1 - W_0) - [rho] g.(x_S - Z) (c_1 - c_0)) / (rho_f h)
+ * from the nodes of the face, filled as p is; x_S is the mean over its leaves
+ * of the centroids of their planes. Away from the surface a_f = g_d. A flat
+ * bed at any angle with its gravity then rests to round-off. Gravity along a
+ * periodic axis has no potential; it is added as it is.
  */
 #ifndef TALUS_PROPERTIES_H
 #define TALUS_PROPERTIES_H
@@ -41,11 +42,20 @@ void properties_density(const struct mesh *mesh, const double density[2],
                         const double *c, const bool *closed, double *rho,
                         double *alpha_f);
 
+struct balance {
+  double gravity[DIM]; /* along axes that are not periodic, m/s^2 */
+  double along[DIM];   /* along periodic axes */
+  double origin[DIM];  /* Z, anywhere in the box */
+  /* scratch [ncells]: W; g.(x_S - Z) and 1 in leaves with a surface, else 0;
+   * the same with the leaves next to them */
+  double *weight, *level, *count, *near_level, *near_count;
+};
+
 /* Gravity a_f on faces [nfaces_all], m/s^2, 0 on closed patches. c filled;
  * normal, plane: the planes of cut leaves (vof_reconstruct); alpha_f as
  * above. Collective. */
 void properties_gravity(const struct mesh *mesh, const double density[2],
-                        const double gravity[DIM], const double *c,
+                        const struct balance *balance, const double *c,
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f);
 

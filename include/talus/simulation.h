@@ -57,12 +57,14 @@ struct simulation {
 
   bool closed[MESH_MAX_PATCHES]; /* patches whose normal velocity is given */
   bool open[MESH_MAX_PATCHES];   /* the others */
+  bool pressure_set;             /* by some boundary */
 
   double time, dt;
   int64_t step;
   double travel; /* cells the surface may have moved since adaptation */
   struct solve_stats pressure, predictor, viscous; /* of the last step */
   struct energy energy;
+  double scale;             /* largest speed, of the viscous tolerance */
   double max_speed;         /* of the grains, m/s */
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
   double mesh_seconds;      /* wall time spent on adaptation */

@@ -14,7 +14,7 @@
 #include "talus/simulation.h"
 
 /* Cells by which a criterion is widened before a leaf may be merged. */
-enum { HYSTERESIS = 1 };
+enum { HYSTERESIS = 2 };
 
 static bool is_surface(double c) {
   return c > PROPERTIES_GAS && c < 1 - PROPERTIES_GAS;

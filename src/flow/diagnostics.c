@@ -8,6 +8,7 @@
 #include "talus/memory.h"
 #include "talus/plane.h"
 #include "talus/simulation.h"
+#include "talus/vof.h"
 
 /* A compensated sum: value + rest is the sum to twice the precision. */
 struct sum {
@@ -71,13 +72,11 @@ static double centroid(const double normal[DIM], double alpha, int d) {
 /* g.x at the centre of the grains of a leaf. */
 static double leaf_potential(const struct mesh *mesh, const double *c,
                              const double *gravity, int32_t i) {
-  double potential = 0, normal[DIM], stencil[NSTENCIL];
+  double potential = 0, normal[DIM], alpha;
   for (int d = 0; d < DIM; d++) potential += gravity[d] * mesh->x[i][d];
   if (c[i] < DROPLETS_THRESHOLD || c[i] > 1 - DROPLETS_THRESHOLD)
     return potential;
-  for (int s = 0; s < NSTENCIL; s++) stencil[s] = c[mesh->stencil[i][s]];
-  plane_normal(stencil, normal);
-  double alpha = plane_alpha(normal, c[i]);
+  vof_plane(mesh, c, i, normal, &alpha);
   for (int d = 0; d < DIM; d++)
     if (gravity[d] != 0)
       potential += gravity[d] * mesh->h[i] * centroid(normal, alpha, d);

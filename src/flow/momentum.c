@@ -40,8 +40,8 @@ static void limited_slopes(const struct mesh *mesh, int d, const double *c,
 }
 
 void momentum_flux(const struct mesh *mesh, int d, double dt,
-                   const double density[2], const double *u_f,
-                   const double *c, const double *flux, const double *band, double *const u[DIM],
+                   const double density[2], const double *u_f, const double *c,
+                   const double *flux, const double *band, double *const u[DIM],
                    struct momentum_flux *out) {
   limited_slopes(mesh, d, c, u, out->slope);
   for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
@@ -72,29 +72,26 @@ void momentum_flux(const struct mesh *mesh, int d, double dt,
 
 void momentum_update(const struct mesh *mesh, int d, double dt,
                      const double density[2], const double *u_f,
-                     const double *c_old, const double *cc,
-                     const double *band, const struct momentum_flux *flux,
-                     double *const u[DIM]) {
+                     const double *c_old, const double *cc, const double *band,
+                     const struct momentum_flux *flux, double *const u[DIM]) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t lower = mesh->cell_face[i][2 * d];
     const int32_t upper = mesh->cell_face[i][2 * d + 1];
     const double k = dt / mesh->h[i];
     const double rho_old = density[1] + c_old[i] * (density[0] - density[1]);
-    const double net_mass = flux->mass[upper] - flux->mass[lower];
+    const double mass[2] = {flux->mass[lower], flux->mass[upper]};
+    double rho = rho_old;
     if (band[i] > 0) {
       const double rho_cc = cc[i] > 0 ? density[0] : density[1];
-      const double own = rho_old + rho_cc * k * (u_f[upper] - u_f[lower]);
-      const double rho = own - k * net_mass;
-      for (int e = 0; e < DIM; e++) {
-        const double *carried = flux->carried[e];
-        u[e][i] = (own * u[e][i] - k * (carried[upper] - carried[lower])) / rho;
-      }
-    } else if (flux->mass[upper] != 0 || flux->mass[lower] != 0) {
-      for (int e = 0; e < DIM; e++) {
-        const double *carried = flux->carried[e];
-        u[e][i] -= k / rho_old *
-                   (carried[upper] - carried[lower] - net_mass * u[e][i]);
-      }
+      rho += k * (rho_cc * (u_f[upper] - u_f[lower]) - (mass[1] - mass[0]));
+    } else if (mass[0] == 0 && mass[1] == 0) {
+      continue;
+    }
+    for (int e = 0; e < DIM; e++) {
+      const double *carried = flux->carried[e];
+      u[e][i] -= k / rho *
+                 ((carried[upper] - mass[1] * u[e][i]) -
+                  (carried[lower] - mass[0] * u[e][i]));
     }
   }
 }

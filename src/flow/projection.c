@@ -33,8 +33,9 @@ void projection_face_velocity(const struct projection *projection, double dt,
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
-      const double lower = projection->rho[node[0]];
-      const double upper = projection->rho[node[1]];
+      const int32_t *leaf = mesh->face_leaf[f];
+      const double lower = projection->rho[leaf[0] < 0 ? leaf[1] : leaf[0]];
+      const double upper = projection->rho[leaf[1] < 0 ? leaf[0] : leaf[1]];
       u_f[f] =
           (lower * u[d][node[0]] + upper * u[d][node[1]]) / (lower + upper);
       u_f[f] += dt * projection->gravity_f[f];

@@ -31,46 +31,100 @@ void properties_density(const struct mesh *mesh, const double density[2],
   mesh_fill_faces(mesh, 1, &alpha_f);
 }
 
-/* g.(x_f - x_S) with the surface in one leaf of the face. */
-static double drop_to_surface(const struct mesh *mesh, int d, int32_t f,
-                              int side, const double gravity[DIM],
-                              double *const normal[DIM], const double *plane) {
-  const int32_t leaf = mesh->face_leaf[f][side];
-  const int32_t node = mesh->face_node[f][side];
-  const bool coarse = node >= mesh->begin_virtual;
-  double n[DIM], centroid[DIM], drop = 0;
-  for (int e = 0; e < DIM; e++) n[e] = normal[e][leaf];
-  plane_centroid(n, plane[leaf], centroid);
-  for (int e = 0; e < DIM; e++) {
-    double face = e == d ? (side ? -0.5 : 0.5) : 0;
-    if (coarse && e != d) {
-      face = (node - mesh->begin_virtual) % NCHILD >> e & 1 ? 0.25 : -0.25;
+/* Level of the surface in or at leaf i: g.(x_S - Z), from its plane, or from
+ * the faces where a full leaf meets an empty one. False if there is none. */
+static bool surface_level(const struct mesh *mesh, const double gravity[DIM],
+                          const double origin[DIM], const double *c,
+                          double *const normal[DIM], const double *plane,
+                          int32_t i, double *level) {
+  double at[DIM] = {0}, n[DIM];
+  int count = 0;
+  if (vof_is_cut(c[i])) {
+    for (int d = 0; d < DIM; d++) n[d] = normal[d][i];
+    plane_centroid(n, plane[i], at);
+    count = 1;
+  } else {
+    for (int f = 0; f < NFACE; f++) {
+      const double next = c[mesh->stencil[i][stencil_face(f)]];
+      if (vof_is_cut(next) || (next > 0.5) == (c[i] > 0.5)) continue;
+      at[f >> 1] += f & 1 ? 0.5 : -0.5;
+      count++;
     }
-    drop += gravity[e] * (face - centroid[e]) * mesh->h[leaf];
   }
-  return drop;
+  *level = 0;
+  if (count == 0) return false;
+  for (int d = 0; d < DIM; d++) {
+    *level +=
+        gravity[d] * (mesh->x[i][d] - origin[d] + mesh->h[i] * at[d] / count);
+  }
+  return true;
+}
+
+/* Leaves next to one with a level take it over: c interpolated in them, on
+ * the coarse side of a jump, feels the surface next door. */
+static void spread_level(const struct mesh *mesh,
+                         const struct balance *balance) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double level = balance->level[i], count = balance->count[i];
+    for (int f = 0; f < NFACE && balance->count[i] == 0; f++) {
+      int32_t node = mesh->stencil[i][stencil_face(f)];
+      if (node >= mesh->begin_boundary) continue;
+      if (node >= mesh->begin_virtual) {
+        node = mesh->virtual_leaf[(node - mesh->begin_virtual) / NCHILD];
+      }
+      level += balance->level[node];
+      count += balance->count[node];
+    }
+    balance->near_level[i] = count > 0 ? level / count : 0;
+    balance->near_count[i] = count > 0;
+  }
+}
+
+static void set_surface(const struct mesh *mesh, const double density[2],
+                        const struct balance *balance, const double *c,
+                        double *const normal[DIM], const double *plane) {
+  static const struct bc neumann[MESH_MAX_PATCHES];
+  const struct bc *bc[] = {neumann, neumann, neumann};
+  double *cells[] = {balance->weight, balance->level, balance->count};
+  double *ghosts[] = {balance->near_level, balance->near_count};
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double weight = 0;
+    for (int d = 0; d < DIM; d++) {
+      weight += balance->gravity[d] * (mesh->x[i][d] - balance->origin[d]);
+    }
+    balance->weight[i] =
+        weight * (density[1] + c[i] * (density[0] - density[1]));
+    balance->count[i] = surface_level(mesh, balance->gravity, balance->origin,
+                                      c, normal, plane, i, &balance->level[i]);
+  }
+  mesh_fill(mesh, 3, cells, bc, true);
+  spread_level(mesh, balance);
+  mesh_fill_ghosts(mesh, 2, ghosts);
 }
 
 void properties_gravity(const struct mesh *mesh, const double density[2],
-                        const double gravity[DIM], const double *c,
+                        const struct balance *balance, const double *c,
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f) {
+  set_surface(mesh, density, balance, c, normal, plane);
   for (int d = 0; d < DIM; d++) {
+    const double along = balance->along[d];
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f], *leaf = mesh->face_leaf[f];
-      const double jump = unit_range(c[node[1]]) - unit_range(c[node[0]]);
-      gravity_f[f] = alpha_f[f] > 0 ? gravity[d] : 0;
-      if (jump == 0 || mesh->face_patch[f] >= 0) continue;
-      double drop = 0;
-      int surfaces = 0;
-      for (int side = 0; side < 2; side++) {
-        if (!vof_is_cut(c[leaf[side]])) continue;
-        drop += drop_to_surface(mesh, d, f, side, gravity, normal, plane);
-        surfaces++;
+      if (mesh->face_patch[f] >= 0) {
+        gravity_f[f] = alpha_f[f] > 0 ? balance->gravity[d] + along : 0;
+        continue;
       }
-      if (surfaces == 0) continue; /* the surface is the face */
-      gravity_f[f] += alpha_f[f] * (density[0] - density[1]) * jump /
-                      mesh->face_h[f] * drop / surfaces;
+      const double jump = (density[0] - density[1]) * (c[node[1]] - c[node[0]]);
+      double level = 0, count = 0;
+      for (int side = 0; side < 2 && jump != 0; side++) {
+        level += balance->near_level[leaf[side]];
+        count += balance->near_count[leaf[side]];
+      }
+      const double weight = balance->weight[node[1]] -
+                            balance->weight[node[0]] -
+                            (count > 0 ? jump * level / count : 0);
+      gravity_f[f] = along + alpha_f[f] * weight / mesh->face_h[f];
     }
   }
   mesh_fill_faces(mesh, 1, &gravity_f);
@@ -79,9 +133,9 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
 /* Part of the line from the node on `side` of a face to the face that lies
  * in the grains, by the plane of the leaf there; the node is the leaf itself
  * or one of its children. */
-static double line_fraction(const struct mesh *mesh, int d, int32_t f,
-                            int side, const double *c,
-                            double *const normal[DIM], const double *plane) {
+static double line_fraction(const struct mesh *mesh, int d, int32_t f, int side,
+                            const double *c, double *const normal[DIM],
+                            const double *plane) {
   const int32_t leaf = mesh->face_leaf[f][side];
   const int32_t node = mesh->face_node[f][side];
   if (!vof_is_cut(c[leaf])) return unit_range(c[leaf]);

@@ -52,6 +52,7 @@ static void set_patch(struct simulation *sim, int patch, int axis,
         MESH_MAX_PATCHES);
   const bool open = boundary->type == BOUNDARY_OUTFLOW;
   sim->open[patch] = open;
+  sim->pressure_set |= open;
   sim->closed[patch] = !open;
   for (int e = 0; e < DIM; e++) {
     struct bc *bc = &sim->u[e]->bc[patch];

@@ -9,10 +9,13 @@
 void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
                double n[DIM], double *alpha) {
   double stencil[NSTENCIL];
+  bool known[NSTENCIL];
   for (int s = 0; s < NSTENCIL; s++) {
-    stencil[s] = fmin(fmax(c[mesh->stencil[leaf][s]], 0), 1);
+    const int32_t node = mesh->stencil[leaf][s];
+    stencil[s] = fmin(fmax(c[node], 0), 1);
+    known[s] = node < mesh->begin_boundary;
   }
-  plane_normal(stencil, n);
+  plane_normal(stencil, known, n);
   *alpha = plane_alpha(n, stencil[STENCIL_CENTRE]);
 }
 

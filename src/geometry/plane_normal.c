@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
+#include <stdbool.h>
 
 #include "cut.h"
 #include "talus/plane.h"
@@ -101,17 +102,19 @@ static inline void add_products(double r, const double derivative[DIM],
 }
 
 /*
- * Misfit of the plane with normal n, |n|_1 = 1, and its derivatives. Sums run
- * over -1, 1, 0 along each axis: a reflection changes no bit of them.
+ * Misfit over the known cells of the plane with normal n, |n|_1 = 1, and its
+ * derivatives. Sums run over -1, 1, 0 along each axis: a reflection changes no
+ * bit of them.
  */
-static void measure_misfit(const double *c, const double n[DIM],
-                           double sum[TERMS]) {
+static void measure_misfit(const double *c, const bool *known,
+                           const double n[DIM], double sum[TERMS]) {
   const int centre = PLANE_STENCIL / 2;
   const struct cut cut = cut_sorted(n, 1.);
   double term[PLANE_STENCIL][TERMS] = {{0.}}, origin[DIM], x[DIM];
   double alpha = plane_alpha(n, c[centre]);
   cut_centroid(&cut, n, alpha, origin);
   for (int s = 0; s < PLANE_STENCIL; s++) {
+    if (known && !known[s]) continue;
     double offset[DIM], local = alpha, derivative[DIM];
     for (int d = 0, rest = s; d < DIM; d++, rest /= 3) {
       offset[d] = rest % 3 - 1;
@@ -176,7 +179,8 @@ static double newton_step(const double sum[TERMS], const double n[DIM],
 
 /* Lower the misfit from that of n, sum[0], and leave the best n and its sums.
  */
-static void fit_normal(const double *c, double n[DIM], double sum[TERMS]) {
+static void fit_normal(const double *c, const bool *known, double n[DIM],
+                       double sum[TERMS]) {
   const double exact = 1e-26, enough = 1e-3, longest = 0.5;
   double part = 1.;
   for (int i = 0; i < 8 && sum[0] > exact; i++) {
@@ -185,7 +189,7 @@ static void fit_normal(const double *c, double n[DIM], double sum[TERMS]) {
     double scale = part * min2(1., longest / norm1(step));
     for (int d = 0; d < DIM; d++) trial[d] = n[d] + scale * step[d];
     normalise(trial);
-    measure_misfit(c, trial, trial_sum);
+    measure_misfit(c, known, trial, trial_sum);
     if (trial_sum[0] < sum[0]) {
       for (int d = 0; d < DIM; d++) n[d] = trial[d];
       for (int t = 0; t < TERMS; t++) sum[t] = trial_sum[t];
@@ -196,15 +200,16 @@ static void fit_normal(const double *c, double n[DIM], double sum[TERMS]) {
   }
 }
 
-void plane_normal(const double c[PLANE_STENCIL], double n[DIM]) {
+void plane_normal(const double c[PLANE_STENCIL],
+                  const bool known[PLANE_STENCIL], double n[DIM]) {
   const double own = c[PLANE_STENCIL / 2];
   mixed_normal(c, n);
   if (!(own > 0. && own < 1.) || norm1(n) <= 0.) return;
   double fit[DIM], sum[TERMS], along = 0.;
-  measure_misfit(c, n, sum);
+  measure_misfit(c, known, n, sum);
   const double start = sum[0];
   for (int d = 0; d < DIM; d++) fit[d] = n[d];
-  fit_normal(c, fit, sum);
+  fit_normal(c, known, fit, sum);
   for (int d = 0; d < DIM; d++) along += fit[d] * n[d];
   if (!(sum[0] < start) || along <= 0.) return; /* no better; turned over */
   const double weight = 1. - sum[0] / start;    /* equation (4) */

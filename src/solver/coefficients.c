@@ -34,7 +34,7 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
       const int32_t face = mesh->cell_face[i][f];
       const int patch = face < mesh->nfaces ? mesh->face_patch[face] : -1;
       const double g = ratio * alpha_f[face];
-      h->w[s][f] = patch < 0 ? g : 0;
+      h->w[s][f] = g;
       if (patch < 0) continue;
       for (int c = 0; c < nparts; c++) {
         const int twice = nparts > 1 && c == f >> 1 ? 2 : 1;
@@ -72,6 +72,21 @@ static void add_ghosts(struct hierarchy *h, int l, double *mass, double *wall) {
   plan_run(&h->level[l].add, 1, &w, NFACE, true);
   plan_run(&h->level[l].add, 1, &mass, 1, true);
   plan_run(&h->level[l].add, 1, &wall, h->nparts, true);
+}
+
+/* Walls have no neighbour: they are in the diagonal. */
+static void set_sides(struct hierarchy *h) {
+  for (int32_t k = 0; k < h->nsides; k++) {
+    struct side *side = &h->sides[k];
+    double *w = h->w[side->slot], grip[NFACE];
+    for (int f = 0; f < NFACE; f++) {
+      grip[f] = w[f ^ 1] > w[f] ? w[f] / w[f ^ 1] : 1;
+      side->grip[f] = (float)grip[f];
+    }
+    for (int f = 0; f < NFACE; f++) {
+      if (side->patch[f] >= 0) w[f] = 0;
+    }
+  }
 }
 
 static void set_inverse(struct hierarchy *h, const double *mass,
@@ -129,6 +144,7 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
     add_ghosts(h, l, mass, wall);
     merge_level(h, l, mass, wall);
   }
+  set_sides(h);
   /* A tree that is its own neighbour has no flux. */
   for (int32_t i = 0; i < h->level[0].nowned; i++) {
     for (int f = 0; f < NFACE; f++) {

@@ -45,8 +45,10 @@ KERNEL double pull(const struct hierarchy *h, int32_t i, int c, int nparts) {
   return nparts > 1 ? sum + transposed(h, i, c) : sum;
 }
 
-KERNEL void relax(struct hierarchy *h, int32_t begin, int32_t end, int nparts) {
-  for (int32_t i = begin; i < end; i++) {
+/* Every `stride`th node from begin to end. */
+KERNEL void relax(struct hierarchy *h, int32_t begin, int32_t end, int stride,
+                  int nparts) {
+  for (int32_t i = begin; i < end; i += stride) {
     double e[DIM];
     for (int c = 0; c < nparts; c++) {
       e[c] = h->inverse[i * nparts + c] * pull(h, i, c, nparts);
@@ -55,11 +57,13 @@ KERNEL void relax(struct hierarchy *h, int32_t begin, int32_t end, int nparts) {
   }
 }
 
-/* The first half sweep, from e = 0. */
+/* The same from e = 0. */
 KERNEL void relax_first(struct hierarchy *h, int32_t begin, int32_t end,
-                        int nparts) {
-  for (int32_t i = begin * nparts; i < end * nparts; i++) {
-    h->e[i] = h->inverse[i] * h->r[i];
+                        int stride, int nparts) {
+  for (int32_t i = begin; i < end; i += stride) {
+    for (int c = 0; c < nparts; c++) {
+      h->e[i * nparts + c] = h->inverse[i * nparts + c] * h->r[i * nparts + c];
+    }
   }
 }
 
@@ -74,12 +78,16 @@ KERNEL double residual(const struct hierarchy *h, int32_t i, int c,
  * were relaxed last. */
 KERNEL void restrict_families(struct hierarchy *h, const struct level *level,
                               int nparts) {
-  const int ncolours = nparts > 1 ? NCHILD : HALF;
+  const int ncolours = nparts > 1 ? 2 : 1;
   for (int32_t k = 0; k < level->nfamilies; k++) {
     double sum[DIM] = {0};
-    for (int q = 0; q < ncolours; q++) {
-      const int32_t i = level->begin + q * level->nfamilies + k;
-      for (int c = 0; c < nparts; c++) sum[c] += residual(h, i, c, nparts);
+    for (int black = 0; black < ncolours; black++) {
+      const int32_t first = family_first(level, k, black);
+      for (int j = 0; j < HALF; j++) {
+        for (int c = 0; c < nparts; c++) {
+          sum[c] += residual(h, first + j, c, nparts);
+        }
+      }
     }
     const int32_t parent = h->family_parent[level->family_begin + k];
     for (int c = 0; c < nparts; c++) h->r[parent * nparts + c] += sum[c];
@@ -132,24 +140,41 @@ KERNEL void steps(const struct hierarchy *h, int l, int32_t p, int c,
   for (int f = 0; f < NFACE; f++) {
     step[f] = 0.25 * (h->e[h->neighbour[p][f] * nparts + c] - e);
   }
-  if (nparts > 1 || !h->wall[p]) return;
+  if (h->side[p] < 0) return;
+  const struct side *side = &h->sides[h->side[p]];
   for (int f = 0; f < NFACE; f++) {
-    const int patch = h->patch[p][f];
-    if (patch >= 0) step[f] = 0.25 * (h->beyond[l][c][patch] - 1) * e;
+    if (side->patch[f] < 0) continue;
+    const double a = h->beyond[l][c][side->patch[f]] - 1;
+    step[f] = 0.25 * (double)side->grip[f] * a * e;
   }
 }
 
+/* Add what the parent's value and steps give to the children of a colour. */
+KERNEL void add_to_children(double *e, int black, double parent,
+                            const double step[NFACE], int nparts) {
+#pragma GCC unroll 4
+  for (int j = 0; j < HALF; j++) {
+    const int child = colour_child(j, black);
+    double sum = parent;
+#pragma GCC unroll 3
+    for (int d = 0; d < DIM; d++) sum += step[2 * d + (child >> d & 1)];
+    e[j * nparts] += sum;
+  }
+}
+
+/* A single component is relaxed on red nodes next, from black ones alone, so
+ * that red children need no value. */
 KERNEL void prolong(struct hierarchy *h, int l, int nparts) {
   const struct level *level = &h->level[l];
   for (int32_t k = 0; k < level->nfamilies; k++) {
     const int32_t p = h->family_parent[level->family_begin + k];
     for (int c = 0; c < nparts; c++) {
+      const double parent = h->e[p * nparts + c];
       double step[NFACE];
       steps(h, l - 1, p, c, nparts, step);
-      for (int child = 0; child < NCHILD; child++) {
-        double sum = h->e[p * nparts + c];
-        for (int d = 0; d < DIM; d++) sum += step[2 * d + (child >> d & 1)];
-        h->e[family_slot(level, k, child) * nparts + c] += sum;
+      for (int black = nparts > 1 ? 0 : 1; black < 2; black++) {
+        double *e = h->e + family_first(level, k, black) * nparts + c;
+        add_to_children(e, black, parent, step, nparts);
       }
     }
   }
@@ -159,20 +184,22 @@ static void copy_ghosts(struct hierarchy *h, int l) {
   plan_run(&h->level[l].copy, 1, &h->e, h->nparts, false);
 }
 
-/* Sweeps over the colours. A single component needs two, red and black, for
- * its neighbours to be of another; velocities need all. */
+/* Sweeps over the colours. Red and black keep the face neighbours apart; for
+ * velocities, coupled across edges too, each child number is a colour of its
+ * own, so that the order of nodes (and ranks) does not matter. */
 KERNEL void smooth(struct hierarchy *h, int l, int nsweeps, bool from_zero,
                    int nparts) {
   const struct level *level = &h->level[l];
-  const int ncolours = nparts > 1 ? NCHILD : 2;
-  const int32_t n = level->nowned / ncolours;
+  const int stride = nparts > 1 ? HALF : 1;
+  const int32_t n = level->nfamilies * HALF;
   for (int k = 0; k < nsweeps; k++) {
-    for (int colour = 0; colour < ncolours; colour++) {
-      const int32_t begin = level->begin + colour * n;
+    for (int colour = 0; colour < 2 * stride; colour++) {
+      const int32_t half = level->begin + colour / stride * n;
+      const int32_t begin = half + colour % stride;
       if (k == 0 && from_zero && colour == 0) {
-        relax_first(h, begin, begin + n, nparts);
+        relax_first(h, begin, half + n, stride, nparts);
       } else {
-        relax(h, begin, begin + n, nparts);
+        relax(h, begin, half + n, stride, nparts);
       }
       copy_ghosts(h, l);
     }

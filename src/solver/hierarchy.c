@@ -208,8 +208,9 @@ static int slot_level(const struct linking *k, int32_t slot) {
 static void set_slopes(const struct linking *k, int l, struct jump *jump) {
   const struct hierarchy *h = k->h;
   const struct level *level = &h->level[l];
-  const int child =
-      colour_child((jump->fine - level->begin) / level->nfamilies);
+  const int32_t i = jump->fine - level->begin;
+  const int black = i >= level->nfamilies * HALF;
+  const int child = colour_child(i % HALF, black);
   for (int d = 0; d < DIM; d++) {
     int steps = 0;
     for (int side = 0; side < 2; side++) {
@@ -287,10 +288,17 @@ static void find_patches(struct hierarchy *h) {
   for (int l = 0; l < h->nlevels; l++) {
     plan_run(&h->level[l].copy, 1, &w, NFACE, false);
   }
-  h->patch = mem_alloc((size_t)h->nactive, sizeof *h->patch);
+  h->side = MEM_NEW(int32_t, h->nactive);
   for (int32_t i = 0; i < h->nactive; i++) {
+    h->side[i] = h->wall[i] ? h->nsides++ : -1;
+  }
+  h->sides = MEM_NEW(struct side, h->nsides);
+  for (int32_t i = 0; i < h->nactive; i++) {
+    if (!h->wall[i]) continue;
+    struct side *side = &h->sides[h->side[i]];
+    side->slot = i;
     for (int f = 0; f < NFACE; f++) {
-      h->patch[i][f] = (int8_t)(h->wall[i] >> f & 1 ? h->w[i][f] - 1 : -1);
+      side->patch[f] = (int8_t)(h->wall[i] >> f & 1 ? h->w[i][f] - 1 : -1);
     }
   }
 }
@@ -369,14 +377,14 @@ void hierarchy_destroy(struct hierarchy *h) {
     plan_end(copy);
   }
   krylov_space_destroy(h->krylov);
-  void *owned[] = {h->patch,     h->beyond,        h->level,
-                   h->leaf_slot, h->family_parent, h->neighbour,
-                   h->corner,    h->wall,          h->jump,
-                   h->w,         h->inverse,       h->e,
-                   h->r,         h->coarse[0],     h->coarse[1],
-                   h->coarse[2], h->work_cells,    h->work_faces,
-                   h->residual,  h->weight,        h->update,
-                   h->scale};
+  void *owned[] = {h->side,       h->sides,     h->beyond,
+                   h->level,      h->leaf_slot, h->family_parent,
+                   h->neighbour,  h->corner,    h->wall,
+                   h->jump,       h->w,         h->inverse,
+                   h->e,          h->r,         h->coarse[0],
+                   h->coarse[1],  h->coarse[2], h->work_cells,
+                   h->work_faces, h->residual,  h->weight,
+                   h->update,     h->scale};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   mem_free(h);
 }

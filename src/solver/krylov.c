@@ -2,6 +2,7 @@
 #include "talus/krylov.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "talus/error.h"
@@ -131,14 +132,12 @@ static void orthogonalise(const struct krylov_system *s,
   }
 }
 
-/* Direction k of the space: precondition, apply, orthogonalise. Leaves
- * <r, q>, <q, q>, <r, r>. */
+/* Next direction: precondition, apply, make orthogonal to the `kept` ones
+ * before it. Leaves <r, q>, <q, q>, <r, r>. */
 static void make_direction(const struct krylov_system *s,
-                           struct krylov_space *space, int iteration,
+                           struct krylov_space *space, int k, int kept,
                            const double *r, double product[3]) {
   const int64_t n = (int64_t)s->n * s->nparts;
-  const int k = iteration % KRYLOV_DIRECTIONS;
-  const int kept = iteration < KRYLOV_DIRECTIONS ? k : KRYLOV_DIRECTIONS - 1;
   space_take(space, k, n);
   double *q = space->q[k];
   s->precondition(s->context, r, space->z[k]);
@@ -151,26 +150,48 @@ static void make_direction(const struct krylov_system *s,
   space->inverse[k] = 1 / product[1];
 }
 
+/* Where an iteration stands. */
+struct progress {
+  int kept;         /* directions that new ones are made orthogonal to */
+  int waited;       /* iterations since <r, r> was halved */
+  double reference; /* <r, r> then */
+  double first;     /* <r, r> at the start */
+};
+
+/* Count an iteration. What round-off leaves of r along old directions cannot
+ * be removed by new ones orthogonal to them: forget them when they are in the
+ * way, 12 digits down. */
+static void progress_count(struct progress *p, const double product[3]) {
+  const double rr = product[2];
+  const double gain = product[0] * product[0] / product[1];
+  const bool halved = p->first == 0 || rr < 0.5 * p->reference;
+  if (p->first == 0) p->first = rr;
+  p->waited = halved ? 0 : p->waited + 1;
+  if (halved) p->reference = rr;
+  p->kept += p->kept < KRYLOV_DIRECTIONS - 1;
+  if (gain < 0.1 * rr && rr < 1e-24 * p->first) p->kept = 0;
+}
+
 struct solve_stats krylov_solve(const struct krylov_system *s,
                                 struct krylov_space *space, double tolerance,
                                 int max_iterations, double *r, double *x) {
   const int64_t n = (int64_t)s->n * s->nparts;
   struct solve_stats stats = {.status = SOLVE_STALLED};
-  double reference = INFINITY; /* <r, r> when progress was last made */
-  int waited = 0;
+  struct progress progress = {0};
   stats.residual_before = stats.residual_after = max_residual(s, r);
-  for (int k = 0;; k++) {
+  for (int k = 0;; k = (k + 1) % KRYLOV_DIRECTIONS) {
     double product[3];
     if (!isfinite(stats.residual_after)) return stats;
     if (stats.residual_after <= tolerance) break;
-    if (k == max_iterations) return stats;
-    make_direction(s, space, k, r, product);
-    waited = product[2] < 0.5 * reference ? 0 : waited + 1;
-    if (waited == 0) reference = product[2];
+    if (stats.iterations == max_iterations) return stats;
+    if (stats.iterations == 0) s->prepare(s->context);
+    make_direction(s, space, k, progress.kept, r, product);
     const double a = product[0] / product[1];
-    if (!isfinite(a) || a == 0 || waited == KRYLOV_PATIENCE) return stats;
-    add_to(n, x, a, space->z[k % KRYLOV_DIRECTIONS]);
-    add_to(n, r, -a, space->q[k % KRYLOV_DIRECTIONS]);
+    if (!isfinite(a) || a == 0) return stats;
+    progress_count(&progress, product);
+    if (progress.waited == KRYLOV_PATIENCE) return stats;
+    add_to(n, x, a, space->z[k]);
+    add_to(n, r, -a, space->q[k]);
     stats.iterations++;
     stats.residual_after = max_residual(s, r);
   }

@@ -43,6 +43,14 @@ struct jump {
   float weight[DIM];
 };
 
+/* A node at a wall. */
+struct side {
+  int32_t slot;
+  int8_t patch[NFACE]; /* beyond that face, -1: no wall */
+  float grip[NFACE];   /* conductance to the wall over that to the other side,
+                          at most 1 */
+};
+
 struct hierarchy {
   const struct mesh *mesh; /* borrowed */
   uint64_t revision;       /* of the mesh */
@@ -59,7 +67,9 @@ struct hierarchy {
   int32_t (*corner)[NCORNER];  /* [nactive] of axes a < b, 4 pair + (upper
                                   a) + 2 (upper b); mirrored at a wall */
   uint8_t *wall;               /* [nactive] bit f: face f is a wall */
-  int8_t (*patch)[NFACE];      /* [nactive] beyond that face, or -1 */
+  int32_t *side;               /* [nactive] into sides, -1: no wall */
+  int32_t nsides;
+  struct side *sides;
   int32_t njumps;
   struct jump *jump;
   /* Operator: set by coefficients_set for each solve */
@@ -78,18 +88,19 @@ struct hierarchy {
   struct krylov_space *krylov;
 };
 
-/* Place of child c among the colours of a level: even sums of coordinates,
- * red, come first. No two nodes of one colour share a face or an edge. */
-static inline int child_colour(int c) {
-  return (__builtin_popcount((unsigned)c) & 1) * HALF + (c >> 1);
-}
-static inline int colour_child(int colour) {
-  const int j = colour % HALF;
-  return 2 * j + ((__builtin_popcount((unsigned)j) & 1) ^ (colour >= HALF));
-}
 /* Slot of child c of family k of a level. */
 static inline int32_t family_slot(const struct level *level, int32_t k, int c) {
-  return level->begin + child_colour(c) * level->nfamilies + k;
+  const int black = __builtin_popcount((unsigned)c) & 1;
+  return level->begin + (black * level->nfamilies + k) * HALF + (c >> 1);
+}
+/* First red and first black child of family k; child j of a colour is
+ * child colour_child(j, black) of the family. */
+static inline int32_t family_first(const struct level *level, int32_t k,
+                                   int black) {
+  return level->begin + (black * level->nfamilies + k) * HALF;
+}
+static inline int colour_child(int j, int black) {
+  return 2 * j + ((__builtin_popcount((unsigned)j) & 1) ^ black);
 }
 /* Number of the pair of axes a < b: 01, 02, 12. */
 static inline int pair_number(int a, int b) { return a + b - 1; }

@@ -64,23 +64,55 @@ static bool has_level(const struct mesh *mesh, const double *alpha_f,
   return mesh_max(mesh, found) > 0;
 }
 
-/* Volume means of v and |v|. */
-static void means(const struct mesh *mesh, const double *v, double *mean,
-                  double *mean_abs) {
-  double sum[3] = {0};
+/* Means over the volume of p, of the residual r, and of the terms it is made
+ * of, each in absolute value. */
+static void means(const struct context *k, const double *rhs, const double *p,
+                  const double *r, double mean[3]) {
+  const struct mesh *mesh = k->mesh;
+  const double *flux = k->h->work_faces; /* of p */
+  double sum[4] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    sum[0] += mesh->volume[i] * v[i];
-    sum[1] += mesh->volume[i] * fabs(v[i]);
-    sum[2] += mesh->volume[i];
+    double size = 0;
+    for (int f = 0; f < NFACE; f++) size += fabs(flux[mesh->cell_face[i][f]]);
+    sum[0] += mesh->volume[i] * p[i];
+    sum[1] += mesh->volume[i] * r[i];
+    sum[2] += mesh->volume[i] * (fabs(rhs[i]) + size / mesh->h[i]);
+    sum[3] += mesh->volume[i];
   }
   MPI_CHECK(
-      MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPI_DOUBLE, MPI_SUM, mesh->comm));
-  *mean = sum[0] / sum[2];
-  *mean_abs = sum[1] / sum[2];
+      MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPI_DOUBLE, MPI_SUM, mesh->comm));
+  for (int j = 0; j < 3; j++) mean[j] = sum[j] / sum[3];
 }
 
 static void shift(const struct mesh *mesh, double a, double *v) {
   for (int32_t i = 0; i < mesh->nleaves; i++) v[i] += a;
+}
+
+static void prepare(void *context) {
+  const struct context *k = context;
+  coefficients_set(k->h, 1, k->alpha_f, 1, NULL, &k->bc);
+}
+
+/* Solve with p determined up to a constant. */
+static struct solve_stats solve_singular(const struct krylov_system *system,
+                                         const double *rhs, double tolerance,
+                                         int max_iterations, double *p) {
+  const struct context *k = system->context;
+  double *r = k->h->residual, before[3], after[3];
+  means(k, rhs, p, r, before);
+  const double excess = fabs(before[1]);
+  /* 1e-12: round-off of sums over many cells of both signs */
+  if (excess > tolerance && excess > 1e-12 * before[2]) {
+    return (struct solve_stats){.residual_before = excess,
+                                .residual_after = excess,
+                                .status = SOLVE_INCOMPATIBLE};
+  }
+  shift(k->mesh, -before[1], r);
+  struct solve_stats stats =
+      krylov_solve(system, k->h->krylov, tolerance, max_iterations, r, p);
+  means(k, rhs, p, r, after);
+  shift(k->mesh, before[0] - after[0], p);
+  return stats;
 }
 
 struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
@@ -89,36 +121,22 @@ struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
                                  int max_iterations, double *p) {
   CHECK(h->revision == mesh->revision, "hierarchy of an older mesh");
   struct context context = {mesh, h, alpha_f, bc};
-  const bool singular = !has_level(mesh, alpha_f, bc);
-  double *r = h->residual, mean, mean_abs, level = 0;
-  mesh_fill(mesh, 1, &p, &bc, false);
-  divergence(&context, p, r);
-  for (int32_t i = 0; i < mesh->nleaves; i++) r[i] = rhs[i] - r[i];
-  if (singular) {
-    means(mesh, p, &level, &mean_abs);
-    means(mesh, r, &mean, &mean_abs);
-    /* 1e-12: round-off of sums over up to 1e8 cells of both signs */
-    if (fabs(mean) > tolerance && fabs(mean) > 1e-12 * mean_abs) {
-      return (struct solve_stats){.residual_before = fabs(mean),
-                                  .residual_after = fabs(mean),
-                                  .status = SOLVE_INCOMPATIBLE};
-    }
-    shift(mesh, -mean, r);
-  }
-  coefficients_set(h, 1, alpha_f, 1, NULL, &bc);
   const struct krylov_system system = {.comm = mesh->comm,
                                        .n = mesh->nleaves,
                                        .nparts = 1,
                                        .context = &context,
+                                       .prepare = prepare,
                                        .precondition = precondition,
                                        .apply = apply,
                                        .weight = h->weight};
+  double *r = h->residual;
+  mesh_fill(mesh, 1, &p, &bc, false);
+  divergence(&context, p, r);
+  for (int32_t i = 0; i < mesh->nleaves; i++) r[i] = rhs[i] - r[i];
   struct solve_stats stats =
-      krylov_solve(&system, h->krylov, tolerance, max_iterations, r, p);
-  if (singular) {
-    means(mesh, p, &mean, &mean_abs);
-    shift(mesh, level - mean, p);
-  }
+      has_level(mesh, alpha_f, bc)
+          ? krylov_solve(&system, h->krylov, tolerance, max_iterations, r, p)
+          : solve_singular(&system, rhs, tolerance, max_iterations, p);
   mesh_fill(mesh, 1, &p, &bc, false);
   return stats;
 }

@@ -130,6 +130,11 @@ static void precondition(void *context, const double *r, double *z) {
   cycle_run(k->h, 1, r, z);
 }
 
+static void prepare(void *context) {
+  const struct context *k = context;
+  coefficients_set(k->h, DIM, k->eta_f, k->theta_dt, k->rho, k->bc);
+}
+
 struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
                                  const double *rho, const double *eta_f,
                                  double theta_dt, double *const rhs[DIM],
@@ -145,7 +150,6 @@ struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
     double *r = h->residual + (int64_t)e * n;
     for (int32_t i = 0; i < n; i++) r[i] = rhs[e][i] - r[i];
   }
-  coefficients_set(h, DIM, eta_f, theta_dt, rho, bc);
   memset(h->update, 0, (size_t)n * DIM * sizeof *h->update);
   double *scale = h->scale;
   for (int32_t i = 0; i < n; i++) scale[i] = 1 / rho[i];
@@ -153,6 +157,7 @@ struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
                                        .n = n,
                                        .nparts = DIM,
                                        .context = &context,
+                                       .prepare = prepare,
                                        .precondition = precondition,
                                        .apply = apply,
                                        .weight = h->weight,
