@@ -20,21 +20,24 @@
  * being 0, then
  *   r_parent = sum over children (r - A e),   r_coarse leaf += w e_fine
  * (conservative); conjugate gradients on the trees; on the way up
- *   e_child += e_P + 1/4 sum_d (e_N(d) - e_P),  N the parent's neighbour on
- *   the child's side,
- * and two sweeps again, virtual children being valid by then. The colours
- * are red and black; for velocities, which are coupled across edges, each
- * child number is one. So the result depends on neither the order of nodes
- * nor the number of ranks.
+ *   e_child += e_P + 1/4 sum_d g_d (e_N(d) - e_P),  N the parent's neighbour
+ *   on the child's side, beyond a wall its mirror image, and
+ *   g = min(1, conductance across that side / across the faces inside P),
+ * which keeps a stiff node from being strained by what is outside; and two
+ * sweeps again, virtual children being valid by then. The colours are red and
+ * black; for velocities, which are coupled across edges, each child number is
+ * one. So the result depends on neither the order of nodes nor the number of
+ * ranks.
  *
- * What was tried and left: piecewise constant prolongation (Poisson the same,
- * viscous 10 % more iterations), linear restriction (diverges beyond a
- * contrast of 100), harmonic coarse coefficients (the same), conductances
- * over 1.5 h across jumps of level (10 % more), W cycles (no flatter), one
- * sweep (30 % more iterations for 25 % less time each), extra sweeps where
- * coefficients jump (20 % fewer, for as much time), velocity components
- * uncoupled (twice the iterations at a contrast of 1e4, none converge at
- * 1e8).
+ * What was tried and left: g = 1 (a third more iterations in a collapse, and
+ * stiff bodies do not converge next to walls), piecewise constant prolongation
+ * (Poisson the same, viscous 10 % more iterations), linear restriction
+ * (diverges beyond a contrast of 100), harmonic coarse coefficients (the same),
+ * conductances over 1.5 h across jumps of level (10 % more), W cycles (no
+ * flatter), one sweep (30 % more iterations for 25 % less time each), extra
+ * sweeps where coefficients jump (20 % fewer, for as much time), velocity
+ * components uncoupled (twice the iterations, none converge at a contrast of
+ * 1e8 on fine grids).
  *
  * Parallel: the children of a node belong to the rank that holds the curve
  * position of the node's first corner, whoever has the leaves; levels of few

@@ -9,7 +9,10 @@
  * rho_cc the density of cc; u^up is the upwind velocity with a limited slope.
  * Cut leaves have no slope: nearly all their grains may leave in one sweep,
  * and what stays behind must keep a velocity between those around it. A
- * uniform velocity is kept to round-off whatever the density ratio. A face next
+ * uniform velocity is kept to round-off whatever the density ratio, and no
+ * sweep makes new extremes; the price is that the rho_cc terms of a step add
+ * up to a momentum of the order of du times a divergence along one axis,
+ * instead of to zero. A face next
  * to a band leaf carries this one flux; the pure leaf on its other side takes
  * it as u* = u - dt/(h rho) [M u^up - M u]_d and has its other faces served by
  * the Bell-Colella-Glaz step (advection.h), so that momentum crosses each face

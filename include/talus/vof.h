@@ -32,7 +32,9 @@ static inline bool vof_is_cut(double c) {
 void vof_reconstruct(const struct mesh *mesh, const double *c,
                      double *const normal[DIM], double *alpha);
 
-/* Plane of one leaf from its filled stencil. */
+/* Plane of one leaf from its filled stencil: from cells and averages; what is
+ * interpolated from a coarser leaf, or mirrored in a wall, only helps to find
+ * a start. Exact for a plane surface. */
 void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
                double n[DIM], double *alpha);
 

@@ -13,7 +13,7 @@ void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
   for (int s = 0; s < NSTENCIL; s++) {
     const int32_t node = mesh->stencil[leaf][s];
     stencil[s] = fmin(fmax(c[node], 0), 1);
-    known[s] = node < mesh->begin_boundary;
+    known[s] = node < mesh->begin_virtual;
   }
   plane_normal(stencil, known, n);
   *alpha = plane_alpha(n, stencil[STENCIL_CENTRE]);

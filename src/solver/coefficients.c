@@ -74,17 +74,32 @@ static void add_ghosts(struct hierarchy *h, int l, double *mass, double *wall) {
   plan_run(&h->level[l].add, 1, &wall, h->nparts, true);
 }
 
-/* Walls have no neighbour: they are in the diagonal. */
-static void set_sides(struct hierarchy *h) {
-  for (int32_t k = 0; k < h->nsides; k++) {
-    struct side *side = &h->sides[k];
-    double *w = h->w[side->slot], grip[NFACE];
-    for (int f = 0; f < NFACE; f++) {
-      grip[f] = w[f ^ 1] > w[f] ? w[f] / w[f ^ 1] : 1;
-      side->grip[f] = (float)grip[f];
+/* Slopes inside a family from values outside are kept small where what is
+ * inside is stiffer than the side between. */
+static void set_limits(struct hierarchy *h, int l) {
+  const struct level *level = &h->level[l];
+  for (int32_t k = 0; k < level->nfamilies; k++) {
+    const int32_t p = h->family_parent[level->family_begin + k];
+    float *limit = h->limit[level->family_begin + k];
+    double inside[DIM] = {0};
+    for (int c = 0; c < NCHILD; c++) {
+      const double *w = h->w[family_slot(level, k, c)];
+      for (int d = 0; d < DIM; d++) {
+        inside[d] += (c >> d & 1) ? 0 : 0.5 * w[2 * d + 1];
+      }
     }
     for (int f = 0; f < NFACE; f++) {
-      if (side->patch[f] >= 0) w[f] = 0;
+      const double in = inside[f >> 1], out = h->w[p][f];
+      limit[f] = in > out ? (float)(out / in) : 1;
+    }
+  }
+}
+
+/* Walls have no neighbour: they are in the diagonal. */
+static void clear_sides(struct hierarchy *h) {
+  for (int32_t k = 0; k < h->nsides; k++) {
+    for (int f = 0; f < NFACE; f++) {
+      if (h->sides[k].patch[f] >= 0) h->w[h->sides[k].slot][f] = 0;
     }
   }
 }
@@ -144,7 +159,8 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
     add_ghosts(h, l, mass, wall);
     merge_level(h, l, mass, wall);
   }
-  set_sides(h);
+  for (int l = 1; l < h->nlevels; l++) set_limits(h, l);
+  clear_sides(h);
   /* A tree that is its own neighbour has no flux. */
   for (int32_t i = 0; i < h->level[0].nowned; i++) {
     for (int f = 0; f < NFACE; f++) {

@@ -135,18 +135,19 @@ KERNEL void prolong_jumps(struct hierarchy *h, const struct level *level,
 
 /* Quarter steps from node p on level l towards its neighbours. */
 KERNEL void steps(const struct hierarchy *h, int l, int32_t p, int c,
-                  int nparts, double step[NFACE]) {
+                  const float limit[NFACE], int nparts, double step[NFACE]) {
   const double e = h->e[p * nparts + c];
   for (int f = 0; f < NFACE; f++) {
     step[f] = 0.25 * (h->e[h->neighbour[p][f] * nparts + c] - e);
   }
-  if (h->side[p] < 0) return;
-  const struct side *side = &h->sides[h->side[p]];
-  for (int f = 0; f < NFACE; f++) {
-    if (side->patch[f] < 0) continue;
-    const double a = h->beyond[l][c][side->patch[f]] - 1;
-    step[f] = 0.25 * (double)side->grip[f] * a * e;
+  if (h->side[p] >= 0) {
+    const struct side *side = &h->sides[h->side[p]];
+    for (int f = 0; f < NFACE; f++) {
+      const int patch = side->patch[f];
+      if (patch >= 0) step[f] = 0.25 * (h->beyond[l][c][patch] - 1) * e;
+    }
   }
+  for (int f = 0; f < NFACE; f++) step[f] *= (double)limit[f];
 }
 
 /* Add what the parent's value and steps give to the children of a colour. */
@@ -171,7 +172,7 @@ KERNEL void prolong(struct hierarchy *h, int l, int nparts) {
     for (int c = 0; c < nparts; c++) {
       const double parent = h->e[p * nparts + c];
       double step[NFACE];
-      steps(h, l - 1, p, c, nparts, step);
+      steps(h, l - 1, p, c, h->limit[level->family_begin + k], nparts, step);
       for (int black = nparts > 1 ? 0 : 1; black < 2; black++) {
         double *e = h->e + family_first(level, k, black) * nparts + c;
         add_to_children(e, black, parent, step, nparts);

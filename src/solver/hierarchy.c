@@ -195,70 +195,6 @@ static void find_leaves(struct linking *k) {
   }
 }
 
-static int slot_level(const struct linking *k, int32_t slot) {
-  const struct hierarchy *h = k->h;
-  if (slot >= h->nowned) return k->ghost_level[slot - h->nowned];
-  int l = h->nlevels - 1;
-  while (slot < h->level[l].begin) l--;
-  return l;
-}
-
-/* Slopes of the coarse leaf: centred if both its neighbours are nodes of its
- * level, else one-sided. */
-static void set_slopes(const struct linking *k, int l, struct jump *jump) {
-  const struct hierarchy *h = k->h;
-  const struct level *level = &h->level[l];
-  const int32_t i = jump->fine - level->begin;
-  const int black = i >= level->nfamilies * HALF;
-  const int child = colour_child(i % HALF, black);
-  for (int d = 0; d < DIM; d++) {
-    int steps = 0;
-    for (int side = 0; side < 2; side++) {
-      const int32_t n = h->neighbour[jump->coarse][2 * d + side];
-      const bool usable = n != jump->coarse && slot_level(k, n) == l - 1;
-      jump->node[d][side] = usable ? n : jump->coarse;
-      steps += usable;
-    }
-    /* the virtual child lies towards the fine node */
-    const int upper = d == jump->face >> 1 ? !(jump->face & 1) : child >> d & 1;
-    jump->weight[d] = steps ? (upper ? 0.25f : -0.25f) / (float)steps : 0;
-  }
-}
-
-/* Faces of owned nodes beyond which lies a coarser leaf. */
-static void list_jumps(struct linking *k, int l, bool count_only) {
-  struct hierarchy *h = k->h;
-  struct level *level = &h->level[l];
-  level->jump_begin = h->njumps;
-  for (int32_t i = level->begin; i < level->begin + level->nowned; i++) {
-    for (int f = 0; f < NFACE; f++) {
-      const int32_t j = h->neighbour[i][f];
-      if (j >= level->begin && j < h->nowned) continue;
-      if (slot_level(k, j) == l) continue;
-      if (!count_only) {
-        struct jump *jump = &h->jump[h->njumps];
-        jump->fine = i;
-        jump->coarse = j;
-        jump->face = f;
-        set_slopes(k, l, jump);
-      }
-      h->njumps++;
-    }
-  }
-  level->jump_end = h->njumps;
-}
-
-static void find_jumps(struct linking *k) {
-  struct hierarchy *h = k->h;
-  for (int l = 1; l < h->nlevels; l++) list_jumps(k, l, true);
-  h->jump = MEM_NEW(struct jump, h->njumps);
-  h->njumps = 0;
-  for (int l = 1; l < h->nlevels; l++) list_jumps(k, l, false);
-  for (int32_t n = 0; n < h->njumps; n++) {
-    h->neighbour[h->jump[n].fine][h->jump[n].face] = h->nslots + n;
-  }
-}
-
 /* Patches of walls, from the leaves up; of several patches on the side of a
  * merged node one is taken. Travels in h->w, which is not needed yet. */
 static void find_patches(struct hierarchy *h) {
@@ -306,6 +242,9 @@ static void find_patches(struct hierarchy *h) {
 static void allocate(struct hierarchy *h) {
   const size_t n = (size_t)h->nslots, ncoarse = (size_t)h->level[0].nowned;
   h->w = mem_alloc(n, sizeof *h->w);
+  const struct level *last = &h->level[h->nlevels - 1];
+  const size_t nfamilies = (size_t)(last->family_begin + last->nfamilies);
+  h->limit = mem_alloc(nfamilies, sizeof *h->limit);
   h->beyond = mem_alloc((size_t)h->nlevels, sizeof *h->beyond);
   h->inverse = MEM_NEW(double, n *DIM);
   h->e = MEM_NEW(double, (n + (size_t)h->njumps) * DIM);
@@ -350,7 +289,7 @@ struct hierarchy *hierarchy_new(const struct mesh *mesh) {
   }
   if (k.nranks > 1) ghosts_make(&k);
   h->nslots = h->nowned + k.nghosts;
-  find_jumps(&k);
+  jumps_make(&k);
   allocate(h);
   find_patches(h);
   for (int l = 0; l < h->nlevels; l++) mem_free(k.parent_key[l]);
@@ -377,14 +316,14 @@ void hierarchy_destroy(struct hierarchy *h) {
     plan_end(copy);
   }
   krylov_space_destroy(h->krylov);
-  void *owned[] = {h->side,       h->sides,     h->beyond,
-                   h->level,      h->leaf_slot, h->family_parent,
-                   h->neighbour,  h->corner,    h->wall,
-                   h->jump,       h->w,         h->inverse,
-                   h->e,          h->r,         h->coarse[0],
-                   h->coarse[1],  h->coarse[2], h->work_cells,
-                   h->work_faces, h->residual,  h->weight,
-                   h->update,     h->scale};
+  void *owned[] = {h->side,          h->sides,      h->limit,
+                   h->beyond,        h->level,      h->leaf_slot,
+                   h->family_parent, h->neighbour,  h->corner,
+                   h->wall,          h->jump,       h->w,
+                   h->inverse,       h->e,          h->r,
+                   h->coarse[0],     h->coarse[1],  h->coarse[2],
+                   h->work_cells,    h->work_faces, h->residual,
+                   h->weight,        h->update,     h->scale};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   mem_free(h);
 }

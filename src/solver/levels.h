@@ -47,8 +47,6 @@ struct jump {
 struct side {
   int32_t slot;
   int8_t patch[NFACE]; /* beyond that face, -1: no wall */
-  float grip[NFACE];   /* conductance to the wall over that to the other side,
-                          at most 1 */
 };
 
 struct hierarchy {
@@ -77,6 +75,9 @@ struct hierarchy {
   double (*w)[NFACE]; /* [nslots] alpha area / distance, 0 at a wall */
   double *inverse;    /* [nslots * nparts] 1 / diagonal, 0 if it is 0 */
   double *e, *r;      /* [nslots * nparts] correction, residual */
+  /* Conductance across a side of a family over that inside it, at most 1,
+   * [families] */
+  float (*limit)[NFACE];
   /* Value beyond a wall over that inside, [nlevels] */
   double (*beyond)[DIM][MESH_MAX_PATCHES];
   double *coarse[3]; /* [trees * nparts] for conjugate gradients */

@@ -53,6 +53,9 @@ void links_grow(struct linking *k, int32_t n);
 void links_face_offset(int face, int offset[DIM]);
 void links_corner_offset(int entry, int offset[DIM]);
 
+/* Faces beyond which lies a coarser leaf (jumps.c). */
+void jumps_make(struct linking *k);
+
 /* Ghost slot of a node of another rank, made if new (ghosts.c). */
 int32_t ghosts_get(struct linking *k, uint64_t key, int level);
 /* Links to other ranks and message plans. Collective. */

@@ -65,6 +65,7 @@ START_TEST(a_solenoidal_field_is_left_alone) {
 }
 END_TEST
 
+Suite *clean_suite(void);
 Suite *clean_suite(void) {
   Suite *suite = suite_create("clean");
   TCase *tc = tcase_create("clean");

@@ -87,6 +87,7 @@ START_TEST(partition_moves_data_with_leaves) {
 }
 END_TEST
 
+Suite *forest_suite(void);
 Suite *forest_suite(void) {
   Suite *suite = suite_create("forest");
   TCase *tc = tcase_create("forest");

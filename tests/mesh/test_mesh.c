@@ -142,6 +142,7 @@ START_TEST(every_face_joins_its_neighbours) {
 }
 END_TEST
 
+Suite *mesh_suite(void);
 Suite *mesh_suite(void) {
   Suite *suite = suite_create("mesh");
   TCase *tc = tcase_create("mesh");

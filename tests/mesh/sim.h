@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Small simulations for tests: parameters of a box of grains under gas, and a
+ * start on any communicator. */
+#ifndef TALUS_TESTS_SIM_H
+#define TALUS_TESTS_SIM_H
+
+#include "bench.h"
+#include "talus/adapt.h"
+#include "talus/simulation.h"
+#include "talus/step.h"
+
+static inline struct rheology newtonian(double eta) {
+  struct rheology r;
+  rheology_init(&r, rheology_find("newtonian"));
+  rheology_set(&r, "eta", eta);
+  return r;
+}
+
+/* Unit box with closed slip sides on one level, gravity 1 downwards along the
+ * last axis, grains of density 1 and viscosity 0.01 under a thousand times
+ * lighter and a hundred times less viscous gas. No shape yet: all grains. */
+static inline struct params box_params(int level) {
+  struct params p = {.dimension = DIM,
+                     .size = 1,
+                     .trees = {1, 1, 1},
+                     .level_min = level,
+                     .level_max = level,
+                     .nboundaries = 6,
+                     .grains = {1, newtonian(1e-2)},
+                     .gas = {1e-3, newtonian(1e-4)},
+                     .cfl = 0.5,
+                     .dt_max = 1,
+                     .tolerance_pressure = 1e-8,
+                     .tolerance_viscous = 1e-8,
+                     .max_iterations = 200,
+                     .theta = 1,
+                     .max_cells = 1000000,
+                     .stop = 1,
+                     .length_scale = 1};
+  p.gravity[DIM - 1] = -1;
+  for (int side = 0; side < 6; side++) p.boundary[side].type = BOUNDARY_SLIP;
+  return p;
+}
+
+/* Periodic, without gravity and gas. */
+static inline struct params periodic_params(int level) {
+  struct params p = box_params(level);
+  p.gravity[DIM - 1] = 0;
+  p.single_phase = true;
+  for (int side = 0; side < 6; side++) {
+    p.boundary[side].type = BOUNDARY_PERIODIC;
+  }
+  return p;
+}
+
+/* Refine from level_min to level_max within `width` leaves of the surface. */
+static inline void params_follow_surface(struct params *p, int level_min,
+                                         double width) {
+  p->level_min = level_min;
+  p->criterion[p->ncriteria++] = (struct criterion){
+      .type = CRITERION_INTERFACE, .level = p->level_max, .width = width};
+}
+
+/* Level set of the grains below the height *context along the last axis. */
+static inline double below(void *context, const double x[3]) {
+  return *(const double *)context - x[DIM - 1];
+}
+
+/* Grains in [0, 0.4]^DIM: a column about to fall. */
+static inline double column(void *context, const double x[3]) {
+  (void)context;
+  double outside = x[0];
+  for (int d = 1; d < DIM; d++) outside = fmax(outside, x[d]);
+  return 0.4 - outside;
+}
+
+static inline void sim_fill(struct simulation *sim) {
+  const struct params *params = sim->params;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const double *centre = sim->mesh->x[i];
+    double x[3] = {0};
+    for (int d = 0; d < DIM; d++) x[d] = centre[d];
+    sim->c->v[i] =
+        params->shape.eval
+            ? shape_fraction(params->shape.eval, params->shape.context, centre,
+                             sim->mesh->h[i], 4)
+            : 1;
+    for (int d = 0; d < DIM; d++) {
+      const struct function *u = &params->velocity[d];
+      sim->u[d]->v[i] = u->eval ? u->eval(u->context, x) : 0;
+    }
+  }
+}
+
+/* As simulation_new, on a communicator, with face velocities the means of the
+ * cells'. The grid follows the criteria. */
+static inline struct simulation *sim_new(const struct params *params,
+                                         MPI_Comm comm) {
+  struct forest_layout layout;
+  simulation_layout(params, &layout);
+  const int start =
+      params->ncriteria > 0 ? params->level_min : params->level_max;
+  struct simulation *sim =
+      simulation_new_on(params, forest_new(comm, &layout, start));
+  sim_fill(sim);
+  for (int k = 0; k < 20 && params->ncriteria > 0; k++) {
+    if (!adapt_grid(sim)) break;
+    sim_fill(sim);
+  }
+  field_fill_many(sim->mesh, DIM, sim->u);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = sim->mesh->face_begin[d]; f < sim->mesh->face_begin[d + 1];
+         f++) {
+      const int32_t *node = sim->mesh->face_node[f];
+      sim->u_f->v[f] = 0.5 * (sim->u[d]->v[node[0]] + sim->u[d]->v[node[1]]);
+    }
+  }
+  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  sim->pressure = step_static_pressure(sim);
+  return sim;
+}
+
+/* Largest |v| of a vector over the leaves, component by component. */
+static inline double largest(const struct simulation *sim,
+                             struct field *const v[DIM]) {
+  double most = 0;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+      most = fmax(most, fabs(v[d]->v[i]));
+    }
+  }
+  return mesh_max(sim->mesh, most);
+}
+
+/* Momentum along d, or (d < 0) the mass. */
+static inline double sim_momentum(const struct simulation *sim, int d) {
+  const double grains = sim->params->grains.density;
+  const double gas = sim->params->gas.density;
+  long double sum = 0;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const double rho = gas + sim->c->v[i] * (grains - gas);
+    sum +=
+        (long double)rho * sim->mesh->volume[i] * (d < 0 ? 1 : sim->u[d]->v[i]);
+  }
+  return mesh_sum(sim->mesh, (double)sum);
+}
+
+#endif

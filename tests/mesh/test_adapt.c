@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/adapt.h"
+
+#include <check.h>
+
+#include "sim.h"
+#include "transport.h"
+
+Suite *adapt_suite(void);
+
+enum { COARSE = 2, FINE = DIM == 2 ? 6 : 5, WIDTH = 2 };
+
+/* Small and to one side, to leave room for the coarsest leaves. */
+static struct body drop = {{0.3, 0.35, 0.32}, 0.15};
+
+static struct params drop_params(void) {
+  struct params params = box_params(FINE);
+  params.shape = (struct function){ball, &drop};
+  params_follow_surface(&params, COARSE, WIDTH);
+  return params;
+}
+
+static double distance(const struct mesh *mesh, int32_t i) {
+  double x[3] = {0};
+  for (int d = 0; d < DIM; d++) x[d] = mesh->x[i][d];
+  return ball(&drop, x);
+}
+
+START_TEST(the_surface_lies_in_a_band_of_the_finest_level) {
+  const struct params params = drop_params();
+  struct simulation *sim = simulation_new(&params);
+  const struct mesh *mesh = sim->mesh;
+  const double h = 1.0 / (1 << FINE);
+  bool band = true, wide = true;
+  double coarsest = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double c = sim->c->v[i];
+    if (c > 1e-6 && c < 1 - 1e-6) band = band && mesh->level[i] == FINE;
+    if (fabs(distance(mesh, i)) < WIDTH * h) {
+      wide = wide && mesh->level[i] == FINE;
+    }
+    coarsest = fmax(coarsest, mesh->h[i]);
+  }
+  coarsest = mesh_max(mesh, coarsest);
+  band = all_ranks(band), wide = all_ranks(wide);
+  const double volume = integral(mesh, sim->c->v), pi = acos(-1);
+  simulation_destroy(sim);
+  ck_assert(band);
+  ck_assert(wide);
+  ck_assert(coarsest == 1.0 / (1 << COARSE)); /* and no more than that */
+  const double exact =
+      DIM == 2 ? pi * pow(drop.size, 2) : 4 / 3.0 * pi * pow(drop.size, 3);
+  ck_assert_double_le(fabs(volume / exact - 1), 1e-5); /* shapes.h */
+}
+END_TEST
+
+START_TEST(everything_inside_takes_its_level) {
+  struct params params = drop_params();
+  struct body body = {{0.5, 0.5, 0.5}, 0.38};
+  params.shape.context = &body;
+  params.criterion[params.ncriteria++] =
+      (struct criterion){.type = CRITERION_INSIDE, .level = FINE - 1};
+  struct simulation *sim = simulation_new(&params);
+  bool good = true;
+  double deep = 0;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const int level = sim->mesh->level[i];
+    double x[3] = {0};
+    for (int d = 0; d < DIM; d++) x[d] = sim->mesh->x[i][d];
+    if (sim->c->v[i] > 1e-6) good = good && level >= FINE - 1;
+    if (ball(&body, x) > 10.0 / (1 << FINE)) { /* out of the band */
+      good = good && level == FINE - 1;
+      deep++;
+    }
+  }
+  deep = mesh_sum(sim->mesh, deep);
+  good = all_ranks(good);
+  simulation_destroy(sim);
+  ck_assert(good);
+  ck_assert_double_gt(deep, 0);
+}
+END_TEST
+
+static double left_is_fine(void *context, const double x[3]) {
+  (void)context;
+  return x[0] < 0.3 ? FINE - 1 : 0;
+}
+
+START_TEST(a_function_of_position_sets_the_level) {
+  struct params params = box_params(FINE);
+  params.level_min = COARSE;
+  params.criterion[params.ncriteria++] =
+      (struct criterion){.type = CRITERION_FUNCTION,
+                         .level = FINE,
+                         .function = {left_is_fine, NULL}};
+  struct simulation *sim = simulation_new(&params);
+  bool good = true;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const int level = sim->mesh->level[i];
+    if (sim->mesh->x[i][0] < 0.3) good = good && level == FINE - 1;
+    if (sim->mesh->x[i][0] > 0.7) good = good && level == COARSE;
+  }
+  good = all_ranks(good);
+  simulation_destroy(sim);
+  ck_assert(good);
+}
+END_TEST
+
+/* A jump of velocity, which only the estimate can see. */
+static double jump_velocity(void *context, const double x[3]) {
+  (void)context;
+  return tanh((x[0] - 0.5) * 40);
+}
+
+START_TEST(the_estimate_finds_a_jump_of_velocity) {
+  struct params params = periodic_params(FINE);
+  params.level_min = COARSE + 1;
+  params.velocity[1] = (struct function){jump_velocity, NULL};
+  params.boundary[0].type = params.boundary[1].type = BOUNDARY_SLIP;
+  params.criterion[params.ncriteria++] = (struct criterion){
+      .type = CRITERION_ESTIMATE, .level = FINE, .threshold = 0.02};
+  struct simulation *sim = simulation_new(&params);
+  bool good = sim->mesh->level_finest == FINE;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const double away = fabs(sim->mesh->x[i][0] - 0.5);
+    if (away < 0.02) good = good && sim->mesh->level[i] == FINE;
+    if (away > 0.3) good = good && sim->mesh->level[i] == COARSE + 1;
+  }
+  good = all_ranks(good);
+  simulation_destroy(sim);
+  ck_assert(good);
+}
+END_TEST
+
+/* Caps just below the sizes that the grid goes through when there is none.
+ * What balance adds is not foreseen: a tenth at most. */
+static double near_a_point(void *context, const double x[3]) {
+  const double h = 1.0 / (1 << COARSE);
+  double away = 0;
+  (void)context;
+  for (int d = 0; d < DIM; d++) away = fmax(away, fabs(x[d] - 0.45));
+  return away < 0.5 * h ? FINE : 0;
+}
+
+START_TEST(the_cap_is_respected) {
+  enum { MOST = 12 };
+  struct params params = drop_params();
+  params.criterion[params.ncriteria++] = (struct criterion){
+      .type = CRITERION_FUNCTION, .level = FINE, .function = {near_a_point}};
+  if (_i) { /* without the surface: a few leaves that ask for many more */
+    params.criterion[0] = params.criterion[1];
+    params.ncriteria = 1;
+  }
+  int64_t size[MOST];
+  double over = 0;
+  int n = 0;
+  struct forest_layout layout;
+  simulation_layout(&params, &layout);
+  for (int part = -1; part < n; part++) {
+    if (part >= 0) params.max_cells = size[part] - 1;
+    struct simulation *sim =
+        simulation_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
+    for (int k = 0; k < MOST; k++) {
+      sim_fill(sim);
+      if (!adapt_grid(sim)) break;
+      const int64_t leaves = forest_nleaves_global(sim->forest);
+      if (part < 0) size[n++] = leaves;
+      over = fmax(over, (double)leaves / (double)params.max_cells);
+    }
+    simulation_destroy(sim);
+  }
+  ck_assert_int_gt(n, FINE - COARSE - 1);
+  ck_assert_double_le(over, 1.1);
+}
+END_TEST
+
+START_TEST(a_second_adaptation_changes_nothing) {
+  struct params params = drop_params();
+  if (_i) {
+    params.criterion[params.ncriteria++] =
+        (struct criterion){.type = CRITERION_INSIDE, .level = FINE - 1};
+  }
+  struct simulation *sim = simulation_new(&params);
+  const bool changed = adapt_grid(sim);
+  simulation_destroy(sim);
+  ck_assert(!changed);
+}
+END_TEST
+
+static double drift(int d, const double x[3]) {
+  (void)x;
+  return d == 0 ? 1 : 0.5;
+}
+
+/* Move the grains by `leaves` of the finest along a diagonal. */
+static void move(struct simulation *sim, double leaves) {
+  const struct mesh *mesh = sim->mesh;
+  double *normal[DIM];
+  field_arrays(sim->normal, normal);
+  fill_faces(mesh, drift, sim->u_f->v);
+  const double dt = 0.25 * (leaves > 0 ? 1 : -1) / (1 << FINE);
+  for (double done = 0; done < fabs(leaves) - 1e-9; done += 0.25) {
+    vof_freeze(mesh, sim->c->v, sim->frozen->v);
+    for (int d = 0; d < DIM; d++) {
+      double *flux = sim->face[0]->v, *u_f = sim->face[1]->v;
+      const double sign = dt > 0 ? 1 : -1;
+      for (int32_t f = 0; f < mesh->nfaces_all; f++) {
+        u_f[f] = sign * sim->u_f->v[f];
+      }
+      field_fill(mesh, sim->c);
+      vof_reconstruct(mesh, sim->c->v, normal, sim->plane->v);
+      vof_flux(mesh, d, fabs(dt), u_f, sim->c->v, normal, sim->plane->v, flux);
+      vof_update(mesh, d, fabs(dt), u_f, flux, sim->frozen->v, sim->c->v);
+    }
+  }
+}
+
+/* After the surface has moved the band follows within a few rounds, and what
+ * is no longer near it is merged again. */
+START_TEST(the_band_follows_the_surface) {
+  const struct params params = drop_params();
+  struct simulation *sim = simulation_new(&params);
+  const double volume = integral(sim->mesh, sim->c->v);
+  const double before = (double)forest_nleaves_global(sim->forest);
+  int rounds = 0;
+  for (int k = 0; k < 8; k++) {
+    move(sim, 1);
+    int n = 0;
+    while (n < 20 && adapt_grid(sim)) n++;
+    if (n > rounds) rounds = n;
+  }
+  bool band = true;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const double c = sim->c->v[i];
+    if (c > 1e-6 && c < 1 - 1e-6) {
+      band = band && sim->mesh->level[i] == FINE;
+    }
+  }
+  band = all_ranks(band);
+  const double after = (double)forest_nleaves_global(sim->forest);
+  const double drifted = integral(sim->mesh, sim->c->v);
+  simulation_destroy(sim);
+  ck_assert(band);
+  ck_assert_int_le(rounds, FINE - COARSE + 1); /* a level at a time */
+  /* about as many as before: the wake is merged, but for the hysteresis */
+  ck_assert_double_le(fabs(after / before - 1), 0.15);
+  ck_assert_double_le(fabs(drifted / volume - 1), 1e-13);
+}
+END_TEST
+
+/* Hysteresis: a surface that goes to and fro by half a leaf asks for some
+ * leaves at first, then for nothing more. */
+START_TEST(a_trembling_surface_leaves_the_grid_alone) {
+  const struct params params = drop_params();
+  struct simulation *sim = simulation_new(&params);
+  bool changed = false;
+  for (int k = 1; k <= 6; k++) {
+    struct body body = drop;
+    for (int d = 0; d < DIM; d++) body.centre[d] += 0.5 * (k & 1) / (1 << FINE);
+    for (int n = 0; n < 20; n++) {
+      fill_shape(sim->mesh, ball, &body, sim->c->v);
+      if (!adapt_grid(sim)) break;
+      changed = changed || k > 2;
+    }
+  }
+  simulation_destroy(sim);
+  ck_assert(!changed);
+}
+END_TEST
+
+Suite *adapt_suite(void) {
+  Suite *suite = suite_create("adapt");
+  TCase *tc = tcase_create("adapt");
+  tcase_add_test(tc, the_surface_lies_in_a_band_of_the_finest_level);
+  tcase_add_test(tc, everything_inside_takes_its_level);
+  tcase_add_test(tc, a_function_of_position_sets_the_level);
+  tcase_add_test(tc, the_estimate_finds_a_jump_of_velocity);
+  tcase_add_loop_test(tc, the_cap_is_respected, 0, 2);
+  tcase_add_loop_test(tc, a_second_adaptation_changes_nothing, 0, 2);
+  tcase_add_test(tc, the_band_follows_the_surface);
+  tcase_add_test(tc, a_trembling_surface_leaves_the_grid_alone);
+  tcase_set_timeout(tc, 60);
+  suite_add_tcase(suite, tc);
+  return suite;
+}

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/hierarchy.h"
+
+#include <check.h>
+
+#include "../../src/solver/levels.h"
+#include "faces.h"
+
+static double one(const double *x) {
+  (void)x;
+  return 1;
+}
+
+START_TEST(neighbours_point_back) {
+  struct forest *forest =
+      grid_new(MPI_COMM_WORLD, 1 + _i % 2, _i / 2, 1, DIM == 2 ? 5 : 4);
+  struct mesh *mesh = mesh_new(forest);
+  struct hierarchy *h = hierarchy_new(mesh);
+  int wrong = 0;
+  for (int32_t i = 0; i < h->nowned; i++) {
+    for (int f = 0; f < NFACE; f++) {
+      const int32_t j = h->neighbour[i][f];
+      if (j < 0 || j >= h->nslots + h->njumps) wrong++;
+      if (j < 0 || j >= h->nowned) continue;
+      if (h->neighbour[j][f ^ 1] != i && j != i) wrong++;
+    }
+    for (int e = 0; e < NCORNER; e++) {
+      if (h->corner[i][e] < 0 || h->corner[i][e] >= h->nslots) wrong++;
+    }
+  }
+  ck_assert_int_eq((int)mesh_sum(mesh, wrong), 0);
+  hierarchy_destroy(h);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
+START_TEST(every_leaf_has_a_place) {
+  struct forest *forest = grid_new(MPI_COMM_WORLD, 2, false, 0, 3);
+  struct mesh *mesh = mesh_new(forest);
+  struct hierarchy *h = hierarchy_new(mesh);
+  double nodes = 0;
+  int wrong = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (h->leaf_slot[i] < 0 || h->leaf_slot[i] >= h->nslots) wrong++;
+  }
+  for (int l = 0; l < h->nlevels; l++) nodes += h->level[l].nowned;
+  /* each family replaces one node by NCHILD: leaves - trees = families
+   * (NCHILD - 1), nodes = leaves + families */
+  const double leaves = (double)forest_nleaves_global(forest);
+  const double families = (leaves - NCHILD) / (NCHILD - 1);
+  ck_assert_double_eq(mesh_sum(mesh, nodes), leaves + families);
+  ck_assert_int_eq((int)mesh_sum(mesh, wrong), 0);
+  hierarchy_destroy(h);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
+/* The residual of the two-point operator, seen through the cycle itself: a
+ * stationary iteration e += M (r - A e) must contract fast. Here on one level,
+ * where the operator of the solver is the same. */
+START_TEST(one_cycle_leaves_little) {
+  struct forest *forest = grid_new(MPI_COMM_WORLD, 1, true, 4, 4);
+  struct mesh *mesh = mesh_new(forest);
+  struct hierarchy *h = hierarchy_new(mesh);
+  struct bc bc[MESH_MAX_PATCHES] = {{0}};
+  const struct bc *bcs[] = {bc};
+  double *alpha_f = face_field(mesh, one, false);
+  double *r = MEM_NEW(double, mesh->nleaves), error = 0;
+  double *e = MEM_NEW(double, mesh->nleaves);
+  double *mass = MEM_NEW(double, mesh->nleaves);
+  /* -lap e + e = r with e = cos(2 pi x): 4 / h^2 sin^2(pi h) + 1 */
+  const double hh = ldexp(1, -4), s = sin(kPi * hh);
+  const double eigenvalue = 4 * s * s / (hh * hh) + 1;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    mass[i] = 1;
+    r[i] = eigenvalue * cos(2 * kPi * mesh->x[i][0]);
+  }
+  coefficients_set(h, 1, alpha_f, 1, mass, bcs);
+  cycle_run(h, 1, r, e);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    error = fmax(error, fabs(e[i] - cos(2 * kPi * mesh->x[i][0])));
+  }
+  error = mesh_max(mesh, error);
+  ck_assert_double_le(error, 0.1);
+  mem_free(alpha_f);
+  mem_free(r);
+  mem_free(e);
+  mem_free(mass);
+  hierarchy_destroy(h);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
+START_TEST(leaves_no_memory_behind) {
+  struct forest *forest = grid_new(MPI_COMM_WORLD, 2, false, 0, 3);
+  struct mesh *mesh = mesh_new(forest);
+  const int64_t before = mem_live_blocks();
+  hierarchy_destroy(hierarchy_new(mesh));
+  const bool good = all_ranks(mem_live_blocks() == before);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+  ck_assert(good);
+}
+END_TEST
+
+START_TEST(ranks_without_leaves) {
+  struct forest_layout layout = {.size = 1};
+  for (int d = 0; d < DIM; d++) layout.trees[d] = 1;
+  struct forest *forest = forest_new(MPI_COMM_WORLD, &layout, 0);
+  struct mesh *mesh = mesh_new(forest); /* one leaf in all */
+  struct hierarchy *h = hierarchy_new(mesh);
+  const double leaves = mesh_sum(mesh, h->nleaves);
+  const bool good = all_ranks(hierarchy_bytes(h) >= 0);
+  hierarchy_destroy(h);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+  ck_assert(good);
+  ck_assert_double_eq(leaves, 1);
+}
+END_TEST
+
+Suite *hierarchy_suite(void);
+Suite *hierarchy_suite(void) {
+  Suite *suite = suite_create("hierarchy");
+  TCase *t = tcase_create("hierarchy");
+  tcase_set_timeout(t, 60);
+  tcase_add_loop_test(t, neighbours_point_back, 0, 4);
+  tcase_add_test(t, every_leaf_has_a_place);
+  tcase_add_test(t, one_cycle_leaves_little);
+  tcase_add_test(t, leaves_no_memory_behind);
+  tcase_add_test(t, ranks_without_leaves);
+  suite_add_tcase(suite, t);
+  return suite;
+}

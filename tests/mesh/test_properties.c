@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/properties.h"
+
+#include <check.h>
+
+#include "bench.h"
+#include "talus/params.h"
+#include "talus/vof.h"
+
+Suite *properties_suite(void);
+
+/* A scalar that is linear in space, with slope k and value v at the origin. */
+struct linear {
+  double v, k[3];
+};
+static double linear(const void *context, const double x[3]) {
+  const struct linear *of = (const struct linear *)context;
+  double sum = of->v;
+  for (int d = 0; d < DIM; d++) sum += of->k[d] * x[d];
+  return sum;
+}
+
+static void fill_linear(const struct mesh *mesh, const struct linear *of,
+                        struct field *field) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double x[3] = {0};
+    for (int d = 0; d < DIM; d++) x[d] = mesh->x[i][d];
+    field->v[i] = linear(of, x);
+  }
+  field_fill(mesh, field);
+}
+
+static struct rheology closure(const char *name, const char *key,
+                               double value) {
+  struct rheology r;
+  rheology_init(&r, rheology_find(name));
+  rheology_set(&r, key, value);
+  return r;
+}
+
+static const double kDensity[] = {1000, 1};
+
+START_TEST(density_is_linear_in_the_fraction) {
+  struct bench *b = bench_new(1, false, 2, 5);
+  const struct mesh *mesh = b->mesh;
+  struct field *c = bench_cell(b, "c");
+  double *rho = bench_cell(b, "rho")->v, *alpha_f = bench_face(b, "alpha")->v;
+  b->closed[NFACE - 1] = false;
+  const struct linear of = {0.1, {0.3, 0.2, 0.1}};
+  fill_linear(mesh, &of, c);
+  properties_density(mesh, kDensity, c->v, b->closed, rho, alpha_f);
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    most = fmax(most, fabs(rho[i] - (1 + 999 * c->v[i])));
+  }
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int patch = mesh->face_patch[f];
+      double x[3], exact = 0;
+      face_centre(mesh, d, f, x);
+      if (patch < 0) exact = 1 / (1 + 999 * linear(&of, x));
+      if (patch == NFACE - 1) { /* no gradient of c at the open side */
+        exact = 1 / (1 + 999 * c->v[mesh->face_owner[f]]);
+      }
+      most = fmax(most, fabs(alpha_f[f] - exact));
+    }
+  }
+  ck_assert_double_le(mesh_max(mesh, most), 1e-12); /* of 1000 */
+  bench_destroy(b);
+}
+END_TEST
+
+START_TEST(fractions_out_of_range_count_as_full_or_empty) {
+  struct bench *b = bench_new(1, true, 3, 3);
+  struct field *c = bench_cell(b, "c");
+  double *rho = bench_cell(b, "rho")->v, *alpha_f = bench_face(b, "alpha")->v;
+  bool good = true;
+  for (int full = 0; full < 2; full++) {
+    for (int32_t i = 0; i < b->mesh->nleaves; i++) {
+      c->v[i] = full ? 1 + 1e-10 : -1e-10;
+    }
+    field_fill(b->mesh, c);
+    properties_density(b->mesh, kDensity, c->v, b->closed, rho, alpha_f);
+    for (int32_t i = 0; i < b->mesh->nleaves; i++) {
+      good = good && rho[i] == kDensity[1 - full];
+    }
+    for (int32_t f = 0; f < b->mesh->nfaces; f++) {
+      good = good && alpha_f[f] == 1 / kDensity[1 - full];
+    }
+  }
+  ck_assert(all_ranks(good));
+  bench_destroy(b);
+}
+END_TEST
+
+START_TEST(shear_rate_of_linear_velocities_is_exact) {
+  static const char *const names[] = {"u_x", "u_y", "u_z"};
+  struct bench *b = bench_new(1 + _i / 2, _i & 1, 2, 5 - _i / 2);
+  const struct mesh *mesh = b->mesh;
+  struct field *field[DIM];
+  double *u[DIM], grad[DIM][DIM], squared = 0, most = 0, count = 0;
+  double *shear_f = bench_face(b, "shear")->v;
+  bench_vector(b, names, field);
+  field_arrays(field, u);
+  srand(11); /* the same on all ranks */
+  for (int e = 0; e < DIM; e++) {
+    struct linear of = {.v = 1};
+    for (int d = 0; d < DIM; d++) {
+      grad[e][d] = of.k[d] = 2 * (rand() / (double)RAND_MAX) - 1;
+    }
+    fill_linear(mesh, &of, field[e]);
+    set_boundary_nodes(mesh, linear, &of, u[e]);
+  }
+  for (int e = 0; e < DIM; e++) {
+    for (int d = 0; d < DIM; d++) {
+      const double strain = 0.5 * (grad[e][d] + grad[d][e]);
+      squared += 2 * strain * strain; /* 2 D:D */
+    }
+  }
+  properties_shear_rate(mesh, u, shear_f);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      if (_i & 1) { /* across a periodic side the profile jumps */
+        bool middle = true;
+        double x[3];
+        face_centre(mesh, d, f, x);
+        for (int e = 0; e < DIM; e++) middle &= fabs(x[e] - 0.5) < 0.2;
+        if (!middle) continue;
+      }
+      most = fmax(most, fabs(shear_f[f] - sqrt(squared)));
+      count++;
+    }
+  }
+  ck_assert_double_gt(mesh_sum(mesh, count), 0);
+  /* round-off of values up to 4 over the finest h */
+  ck_assert_double_le(mesh_max(mesh, most), 32 * 2e-15);
+  bench_destroy(b);
+}
+END_TEST
+
+/* What properties_viscosity reads and writes. */
+struct mixture {
+  struct phase grains, gas;
+  struct field *c, *p, *plane;
+  double *normal[DIM], *shear, *work[2], *eta;
+};
+
+static struct mixture mixture_new(struct bench *b) {
+  static const char *const names[] = {"normal_x", "normal_y", "normal_z"};
+  struct mixture m = {
+      .grains = {1, closure("newtonian", "eta", 200)},
+      .gas = {1, closure("newtonian", "eta", 0.5)},
+      .c = bench_cell(b, "c"),
+      .p = bench_cell(b, "p"),
+      .plane = bench_cell(b, "plane"),
+      .shear = bench_face(b, "shear")->v,
+      .work = {bench_face(b, "work_0")->v, bench_face(b, "work_1")->v},
+      .eta = bench_face(b, "eta")->v};
+  struct field *normal[DIM];
+  bench_vector(b, names, normal);
+  field_arrays(normal, m.normal);
+  return m;
+}
+
+static void mixture_eval(const struct bench *b, struct mixture *m, bool gas,
+                         const double gravity[DIM]) {
+  const struct mesh *mesh = b->mesh;
+  field_fill(mesh, m->c);
+  vof_reconstruct(mesh, m->c->v, m->normal, m->plane->v);
+  properties_viscosity(mesh, &m->grains, gas ? &m->gas : NULL, gravity, m->c->v,
+                       m->normal, m->plane->v, m->p->v, b->closed, m->shear,
+                       m->work, m->eta);
+}
+
+/* With eta = mu p / gamma the viscosity tells which pressure was taken. The
+ * profile is that of grains at rest, the upper side open. */
+START_TEST(face_pressure_is_exact_for_linear_profiles) {
+  struct bench *b = bench_new(1, false, 2, 5);
+  const struct mesh *mesh = b->mesh;
+  struct mixture m = mixture_new(b);
+  const double gravity[] = {0.25, -0.35, 0.2}, density = 2;
+  struct linear of = {2, {0}};
+  double most = 0;
+  m.grains = (struct phase){density, closure("coulomb", "mu_s", 0.3)};
+  m.grains.rheology.eta_max = 1e30;
+  const int top = NFACE - 1;
+  for (int d = 0; d < DIM; d++) of.k[d] = density * gravity[d];
+  b->closed[top] = false;
+  m.p->bc[top] = (struct bc){BC_NEUMANN, of.k[DIM - 1], 0};
+  fill_linear(mesh, &of, m.p);
+  for (int32_t i = 0; i < mesh->nleaves; i++) m.c->v[i] = 1;
+  for (int32_t f = 0; f < mesh->nfaces; f++) m.shear[f] = 0.25;
+  mixture_eval(b, &m, false, gravity);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      double x[3];
+      face_centre(mesh, d, f, x);
+      most = fmax(most, fabs(m.eta[f] - 0.3 * linear(&of, x) / 0.25));
+    }
+  }
+  ck_assert_double_le(mesh_max(mesh, most), 1e-14);
+  bench_destroy(b);
+}
+END_TEST
+
+/* A plane surface, n.x <= 0.5, with a normal that stencils find exactly. */
+static const double kNormal[] = {0.2, DIM == 2 ? 0.6 : 0.1, 0.7};
+static double plane_level_set(void *context, const double x[3]) {
+  double sum = 0.5;
+  (void)context;
+  for (int d = 0; d < DIM; d++) sum -= kNormal[d] * x[d];
+  return sum;
+}
+
+/* Well away from walls, where the stencil bends the plane. */
+static bool is_inner(const double x[3], double h) {
+  bool inner = true;
+  for (int d = 0; d < DIM; d++)
+    inner = inner && fabs(x[d] - 0.5) < 0.5 - 1.6 * h;
+  return inner;
+}
+
+/* With gravity across the surface, G = g.x on it, the force on faces is the
+ * difference of q = rho g.x - [rho] G c between their nodes, filled as the
+ * pressure is: so a pressure can hold it, however the surface lies in the
+ * grid, across levels and at walls. */
+START_TEST(gravity_on_a_tilted_bed_is_a_gradient) {
+  struct bench *b = bench_new(1, false, _i ? 2 : 4, _i ? 5 : 4);
+  const struct mesh *mesh = b->mesh;
+  struct mixture m = mixture_new(b);
+  struct field *q = bench_cell(b, "q");
+  double *rho = bench_cell(b, "rho")->v, *alpha_f = bench_face(b, "alpha")->v;
+  double *gravity_f = bench_face(b, "gravity")->v, most = 0;
+  struct balance balance = {.weight = bench_cell(b, "weight")->v,
+                            .level = bench_cell(b, "level")->v,
+                            .count = bench_cell(b, "count")->v,
+                            .near_level = bench_cell(b, "near_level")->v,
+                            .near_count = bench_cell(b, "near_count")->v};
+  for (int d = 0; d < DIM; d++) balance.gravity[d] = -kNormal[d];
+  fill_shape(mesh, plane_level_set, NULL, m.c->v);
+  field_fill(mesh, m.c);
+  vof_reconstruct(mesh, m.c->v, m.normal, m.plane->v);
+  properties_density(mesh, kDensity, m.c->v, b->closed, rho, alpha_f);
+  properties_gravity(mesh, kDensity, &balance, m.c->v, m.normal, m.plane->v,
+                     alpha_f, gravity_f);
+  const double jump = kDensity[0] - kDensity[1], on_surface = -0.5;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double g_x = 0;
+    for (int d = 0; d < DIM; d++) g_x += balance.gravity[d] * mesh->x[i][d];
+    q->v[i] = rho[i] * g_x - jump * on_surface * m.c->v[i];
+  }
+  field_fill(mesh, q);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int32_t *node = mesh->face_node[f];
+    const double exact =
+        mesh->face_patch[f] >= 0
+            ? 0 /* closed */
+            : alpha_f[f] * (q->v[node[1]] - q->v[node[0]]) / mesh->face_h[f];
+    most = fmax(most, fabs(gravity_f[f] - exact));
+  }
+  /* planes good to 1e-12, times the ratio of the densities */
+  ck_assert_double_le(mesh_max(mesh, most), 1e-9);
+  bench_destroy(b);
+}
+END_TEST
+
+/* Harmonic mean of 200 and 0.5 by the part of the line between the two nodes
+ * of a face that lies below the surface. */
+START_TEST(phases_are_mixed_in_series_along_the_line) {
+  struct bench *b = bench_new(1, false, 4, 4);
+  const struct mesh *mesh = b->mesh;
+  struct mixture m = mixture_new(b);
+  const double still[DIM] = {0};
+  double most = 0, mixed = 0;
+  fill_shape(mesh, plane_level_set, NULL, m.c->v);
+  mixture_eval(b, &m, true, still);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      double x[3], end[2], part;
+      face_centre(mesh, d, f, x);
+      if (!is_inner(x, mesh->face_h[f])) continue;
+      for (int side = 0; side < 2; side++) {
+        x[d] += (side ? 1 : -0.5) * mesh->face_h[f];
+        end[side] = plane_level_set(NULL, x);
+      }
+      part = end[0] > 0;
+      if ((end[0] > 0) != (end[1] > 0)) {
+        part = fmax(end[0], end[1]) / fabs(end[0] - end[1]);
+        mixed++;
+      }
+      const double exact = 1 / (part / 200 + (1 - part) / 0.5);
+      most = fmax(most, fabs(m.eta[f] / exact - 1));
+    }
+  }
+  ck_assert_double_gt(mesh_sum(mesh, mixed), 10);
+  /* alpha from c, good to 1e-12 in a corner, times the ratio of 400 */
+  ck_assert_double_le(mesh_max(mesh, most), 1e-9);
+  bench_destroy(b);
+}
+END_TEST
+
+/* Each phase has the viscosity of its own closure there: grains eta = mu p /
+ * gamma, gas constant; halves of the line where the surface is a face. */
+START_TEST(each_phase_takes_its_own_closure) {
+  struct bench *b = bench_new(1, true, 3, 3);
+  const struct mesh *mesh = b->mesh;
+  struct mixture m = mixture_new(b);
+  const double still[DIM] = {0};
+  double most = 0;
+  m.grains = (struct phase){1, closure("coulomb", "mu_s", 0.4)};
+  m.grains.rheology.eta_max = 1e30;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    m.c->v[i] = mesh->x[i][0] < 0.5;
+    m.p->v[i] = 3 + mesh->x[i][1];
+  }
+  field_fill(mesh, m.p);
+  for (int32_t f = 0; f < mesh->nfaces; f++) m.shear[f] = 0.1 + f % 7;
+  mixture_eval(b, &m, true, still);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int32_t *node = mesh->face_node[f];
+    const double c_f = 0.5 * (m.c->v[node[0]] + m.c->v[node[1]]);
+    const double p_f = 0.5 * (m.p->v[node[0]] + m.p->v[node[1]]);
+    const double own = 0.4 * p_f / m.shear[f];
+    const double exact = 1 / (c_f / own + (1 - c_f) / 0.5);
+    most = fmax(most, fabs(m.eta[f] / exact - 1));
+  }
+  ck_assert_double_le(mesh_max(mesh, most), 1e-14);
+  bench_destroy(b);
+}
+END_TEST
+
+Suite *properties_suite(void) {
+  Suite *suite = suite_create("properties");
+  TCase *tc = tcase_create("properties");
+  tcase_add_test(tc, density_is_linear_in_the_fraction);
+  tcase_add_test(tc, fractions_out_of_range_count_as_full_or_empty);
+  tcase_add_loop_test(tc, shear_rate_of_linear_velocities_is_exact, 0, 4);
+  tcase_add_test(tc, face_pressure_is_exact_for_linear_profiles);
+  tcase_add_loop_test(tc, gravity_on_a_tilted_bed_is_a_gradient, 0, 2);
+  tcase_add_test(tc, phases_are_mixed_in_series_along_the_line);
+  tcase_add_test(tc, each_phase_takes_its_own_closure);
+  tcase_set_timeout(tc, 60);
+  suite_add_tcase(suite, tc);
+  return suite;
+}

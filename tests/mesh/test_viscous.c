@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/viscous.h"
+
+#include <check.h>
+#include <stdlib.h>
+
+#include "faces.h"
+
+enum { MOST = 100 };
+
+struct flow {
+  struct forest *forest;
+  struct mesh *mesh;
+  struct hierarchy *hierarchy;
+  struct bc side[MESH_MAX_PATCHES];
+  const struct bc *bc[DIM];
+  double *eta_f, *rho, *u[DIM], *rhs[DIM];
+};
+
+static struct flow *flow_new(struct forest *forest,
+                             double (*eta)(const double *x),
+                             enum bc_type type) {
+  struct flow *s = MEM_NEW(struct flow, 1);
+  s->forest = forest;
+  s->mesh = mesh_new(forest);
+  s->hierarchy = hierarchy_new(s->mesh);
+  s->eta_f = face_field(s->mesh, eta, false);
+  s->rho = MEM_NEW(double, s->mesh->nleaves);
+  for (int k = 0; k < MESH_MAX_PATCHES; k++) s->side[k].type = type;
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) s->rho[i] = 1;
+  for (int d = 0; d < DIM; d++) {
+    s->bc[d] = s->side;
+    s->u[d] = MEM_NEW(double, s->mesh->ncells);
+    s->rhs[d] = MEM_NEW(double, s->mesh->nleaves);
+  }
+  return s;
+}
+
+static void flow_destroy(struct flow *s) {
+  hierarchy_destroy(s->hierarchy);
+  mesh_destroy(s->mesh);
+  forest_destroy(s->forest);
+  mem_free(s->eta_f);
+  mem_free(s->rho);
+  for (int d = 0; d < DIM; d++) {
+    mem_free(s->u[d]);
+    mem_free(s->rhs[d]);
+  }
+  mem_free(s);
+}
+
+static double one(const double *x) {
+  (void)x;
+  return 1;
+}
+/* Rough, 1e-3 .. 1e3 */
+static double rough(const double *x) {
+  return pow(10, 3 * sin(1e4 * x[0] + 2e4 * x[1]));
+}
+
+/* u = A x. */
+static void set_linear(struct flow *s, double a[DIM][DIM]) {
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    for (int d = 0; d < DIM; d++) {
+      s->u[d][i] = 0;
+      for (int e = 0; e < DIM; e++) s->u[d][i] += a[d][e] * s->mesh->x[i][e];
+    }
+  }
+  mesh_fill(s->mesh, DIM, s->u, s->bc, false);
+}
+
+/* Largest force more than 0.26 from the walls, two cells of level 3, where
+ * no boundary node is read. */
+static double inner_force(struct flow *s) {
+  const struct mesh *mesh = s->mesh;
+  double most = 0;
+  viscous_force(mesh, s->eta_f, s->u, s->rhs);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    bool inside = true;
+    for (int d = 0; d < DIM; d++) {
+      inside = inside && fabs(mesh->x[i][d] - 0.5) < 0.24;
+    }
+    if (!inside) continue;
+    for (int d = 0; d < DIM; d++) most = fmax(most, fabs(s->rhs[d][i]));
+  }
+  return mesh_max(mesh, most);
+}
+
+START_TEST(linear_velocity_has_no_force) {
+  struct flow *s =
+      flow_new(grid_new(MPI_COMM_WORLD, 1, false, 3, 5), one, BC_NEUMANN);
+  double a[DIM][DIM];
+  for (int d = 0; d < DIM; d++) {
+    for (int e = 0; e < DIM; e++) a[d][e] = sin(1 + 3 * d + 5 * e);
+  }
+  set_linear(s, a);
+  const double most = inner_force(s);
+  ck_assert_double_le(most, 1e-11); /* 1e-16 / h^2 */
+  flow_destroy(s);
+}
+END_TEST
+
+START_TEST(rigid_rotation_has_no_stress) {
+  struct flow *s =
+      flow_new(grid_new(MPI_COMM_WORLD, 1, false, 3, 5), rough, BC_NEUMANN);
+  double a[DIM][DIM] = {{0}};
+  a[0][1] = 1, a[1][0] = -1;
+  a[DIM - 1][0] += 0.5, a[0][DIM - 1] -= 0.5;
+  set_linear(s, a);
+  const double most = inner_force(s);
+  ck_assert_double_le(most, 1e-8); /* 1e3 times that */
+  flow_destroy(s);
+}
+END_TEST
+
+static void set_noise(struct flow *s) {
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    for (int d = 0; d < DIM; d++) {
+      const double *x = s->mesh->x[i];
+      s->u[d][i] = sin(1e4 * x[d] + 3e4 * x[(d + 1) % DIM]);
+    }
+  }
+  mesh_fill(s->mesh, DIM, s->u, s->bc, false);
+}
+
+START_TEST(momentum_balances) {
+  struct flow *s =
+      flow_new(grid_new(MPI_COMM_WORLD, 2, true, 1, 4), rough, BC_NEUMANN);
+  double sum[DIM] = {0}, size = 0;
+  set_noise(s);
+  viscous_force(s->mesh, s->eta_f, s->u, s->rhs);
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    for (int d = 0; d < DIM; d++) {
+      sum[d] += s->mesh->volume[i] * s->rhs[d][i];
+      size += s->mesh->volume[i] * fabs(s->rhs[d][i]);
+    }
+  }
+  size = mesh_sum(s->mesh, size);
+  for (int d = 0; d < DIM; d++) sum[d] = mesh_sum(s->mesh, sum[d]);
+  for (int d = 0; d < DIM; d++) ck_assert_double_le(fabs(sum[d]), 1e-14 * size);
+  flow_destroy(s);
+}
+END_TEST
+
+START_TEST(dissipation_is_the_work_of_the_force) {
+  struct flow *s =
+      flow_new(grid_new(MPI_COMM_WORLD, 2, _i, 3, 3), rough, BC_DIRICHLET);
+  double *heat = MEM_NEW(double, s->mesh->nleaves), work = 0, sum = 0;
+  set_noise(s);
+  viscous_force(s->mesh, s->eta_f, s->u, s->rhs);
+  viscous_dissipation(s->mesh, s->eta_f, s->u, heat);
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    sum += s->mesh->volume[i] * heat[i];
+    for (int d = 0; d < DIM; d++) {
+      work -= s->mesh->volume[i] * s->u[d][i] * s->rhs[d][i];
+    }
+  }
+  work = mesh_sum(s->mesh, work);
+  sum = mesh_sum(s->mesh, sum);
+  ck_assert_double_eq_tol(sum, work, 1e-12 * fabs(work));
+  mem_free(heat);
+  flow_destroy(s);
+}
+END_TEST
+
+/* Periodic waves u_d = sin(theta + d), theta = 2 pi sum x, in a fluid of eta =
+ * exp(2 cos(2 pi x_0)). */
+static double smooth_eta(const double *x) {
+  return exp(2 * cos(2 * kPi * x[0]));
+}
+static double wave(const double *x, int d) {
+  double theta = d;
+  for (int e = 0; e < DIM; e++) theta += 2 * kPi * x[e];
+  return sin(theta);
+}
+static double wave_force(const double *x, int d) {
+  const double k = 2 * kPi, eta = smooth_eta(x);
+  const double slope = -2 * k * sin(k * x[0]) * eta;
+  double force = 0;
+  for (int e = 0; e < DIM; e++) {
+    const double y[] = {x[0] + 0.25, x[1], DIM > 2 ? x[DIM - 1] : 0};
+    if (e == 0) force += slope * k * (wave(y, d) + wave(y, e));
+    force -= eta * k * k * (wave(x, d) + wave(x, e));
+  }
+  return force;
+}
+
+static double wave_error(int base, int level, bool *converged) {
+  struct flow *s = flow_new(grid_new(MPI_COMM_WORLD, 1, true, base, level),
+                            smooth_eta, BC_NEUMANN);
+  double error = 0;
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    const double *x = s->mesh->x[i];
+    for (int d = 0; d < DIM; d++) {
+      s->rhs[d][i] = wave(x, d) - wave_force(x, d);
+    }
+  }
+  const struct solve_stats stats =
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1, s->rhs, s->bc,
+                    1e-8, MOST, s->u);
+  *converged = *converged && stats.status == SOLVE_CONVERGED;
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    for (int d = 0; d < DIM; d++) {
+      const double e = s->u[d][i] - wave(s->mesh->x[i], d);
+      error += s->mesh->volume[i] * e * e;
+    }
+  }
+  error = sqrt(mesh_sum(s->mesh, error));
+  flow_destroy(s);
+  return error;
+}
+
+START_TEST(manufactured_solution_is_second_order) {
+  const int base = DIM == 2 ? 5 : 4;
+  bool converged = true;
+  const double coarse = wave_error(base, base + _i, &converged);
+  const double fine = wave_error(base + 1, base + 1 + _i, &converged);
+  ck_assert(converged);
+  ck_assert_double_ge(log2(coarse / fine), 1.9);
+}
+END_TEST
+
+static double contrast; /* of the disc below to the fluid around it */
+static double disc(const double *x) {
+  return from_middle(x) < 0.25 ? fmax(contrast, 1) : fmax(1 / contrast, 1);
+}
+
+/* Iterations from zero to 1e-8 times the first residual, with dt so that
+ * rho h^2 / (eta_soft dt) = lambda. */
+static int disc_iterations(int base, int level, double lambda) {
+  struct flow *s = flow_new(grid_new(MPI_COMM_WORLD, 1, false, base, level),
+                            disc, BC_DIRICHLET);
+  const double dt = ldexp(1, -2 * level) / lambda;
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    const double *x = s->mesh->x[i];
+    for (int d = 0; d < DIM; d++) {
+      s->rhs[d][i] = sin(3 * x[d] + 1) * cos(5 * x[(d + 1) % DIM]);
+    }
+  }
+  const struct solve_stats stats =
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, dt, s->rhs, s->bc,
+                    1e-8, MOST, s->u);
+  flow_destroy(s);
+  return stats.status == SOLVE_CONVERGED ? stats.iterations : MOST;
+}
+
+START_TEST(contrast_of_viscosity) {
+  static const double contrasts[] = {1, 1e4, 1e8, 1e-4, 1e-8};
+  static const double lambdas[] = {1, 1e-4};
+  const int level = DIM == 2 ? 5 : 4;
+  contrast = contrasts[_i % 5];
+  const double lambda = lambdas[_i / 5];
+  ck_assert_int_lt(disc_iterations(level, level, lambda), 40);
+  /* with jumps of level across the surface of the ball */
+  const int most = DIM == 2 ? 40 : 55;
+  ck_assert_int_lt(disc_iterations(level - 1, level + 1, lambda), most);
+}
+END_TEST
+
+START_TEST(solution_does_not_depend_on_ranks) {
+  double sum[2];
+  int iterations[2];
+  contrast = 1e3;
+  for (int alone = 0; alone < 2; alone++) {
+    struct flow *s =
+        flow_new(grid_new(alone ? MPI_COMM_SELF : MPI_COMM_WORLD, 2, _i & 1,
+                          _i < 2 ? 1 : 3, _i < 2 ? 6 - DIM + 1 : 3),
+                 disc, BC_DIRICHLET);
+    for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+      for (int d = 0; d < DIM; d++) s->rhs[d][i] = sin(5 * s->mesh->x[i][d]);
+    }
+    const struct solve_stats stats =
+        viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 0.01, s->rhs,
+                      s->bc, 1e-10, MOST, s->u);
+    double local = 0;
+    for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+      local += s->mesh->volume[i] * (s->u[0][i] + 2 * s->u[1][i]);
+    }
+    sum[alone] = mesh_sum(s->mesh, local);
+    iterations[alone] = stats.iterations;
+    flow_destroy(s);
+  }
+  const bool good = all_ranks(fabs(sum[0] - sum[1]) <= 1e-9 &&
+                              abs(iterations[0] - iterations[1]) <= 1);
+  ck_assert(good);
+}
+END_TEST
+
+START_TEST(robin_walls_slip) {
+  /* Couette flow from a wall that slips by 0.3 to one that moves: with
+   * u = (y + L) / (1 + L) the shear is the same everywhere. */
+  struct forest_layout layout = {.size = 1};
+  for (int d = 0; d < DIM; d++) layout.trees[d] = 1, layout.periodic[d] = true;
+  layout.periodic[1] = false;
+  struct flow *s =
+      flow_new(forest_new(MPI_COMM_WORLD, &layout, 4), one, BC_DIRICHLET);
+  struct bc along[MESH_MAX_PATCHES] = {{0}};
+  along[2] = (struct bc){BC_ROBIN, 0, 0.3};
+  along[3] = (struct bc){BC_DIRICHLET, 1, 0};
+  s->bc[0] = along;
+  const struct solve_stats stats =
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1e8, s->rhs, s->bc,
+                    1e-4, MOST, s->u);
+  double error = 0;
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    const double exact = (s->mesh->x[i][1] + 0.3) / 1.3;
+    error = fmax(error, fabs(s->u[0][i] - exact));
+  }
+  error = mesh_max(s->mesh, error);
+  ck_assert_int_eq(stats.status, SOLVE_CONVERGED);
+  ck_assert_double_le(error, 1e-7); /* 1 / dt is left of inertia */
+  flow_destroy(s);
+}
+END_TEST
+
+Suite *viscous_suite(void);
+Suite *viscous_suite(void) {
+  Suite *suite = suite_create("viscous");
+  TCase *t = tcase_create("viscous");
+  tcase_set_timeout(t, 120);
+  tcase_add_test(t, linear_velocity_has_no_force);
+  tcase_add_test(t, rigid_rotation_has_no_stress);
+  tcase_add_test(t, momentum_balances);
+  tcase_add_loop_test(t, dissipation_is_the_work_of_the_force, 0, 2);
+  tcase_add_loop_test(t, manufactured_solution_is_second_order, 0, 2);
+  tcase_add_loop_test(t, contrast_of_viscosity, 0, 10);
+  tcase_add_loop_test(t, solution_does_not_depend_on_ranks, 0, 4);
+  tcase_add_test(t, robin_walls_slip);
+  suite_add_tcase(suite, t);
+  return suite;
+}
