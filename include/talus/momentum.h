@@ -4,19 +4,17 @@
  * In leaves near the interface (the band) the momentum rho u rides in the
  * sweeps of vof.h, with the mass flux that moves c:
  *   M = rho_1 F + rho_2 (u_f - F),
- *   rho* u* = rho u - dt/h [M u^up]_d + rho_cc u dt/h [u_f]_d,
+ *   rho* u* = rho u - dt/h [M u^up]_d + rho_cc u_0 dt/h [u_f]_d,
  *   rho* = rho - dt/h [M]_d + rho_cc dt/h [u_f]_d,
- * rho_cc the density of cc; u^up is the upwind velocity with a limited slope.
- * Cut leaves have no slope: nearly all their grains may leave in one sweep,
- * and what stays behind must keep a velocity between those around it. A
- * uniform velocity is kept to round-off whatever the density ratio, and no
- * sweep makes new extremes; the price is that the rho_cc terms of a step add
- * up to a momentum of the order of du times a divergence along one axis,
- * instead of to zero. A face next
- * to a band leaf carries this one flux; the pure leaf on its other side takes
- * it as u* = u - dt/(h rho) [M u^up - M u]_d and has its other faces served by
- * the Bell-Colella-Glaz step (advection.h), so that momentum crosses each face
- * once.
+ * rho_cc the density of cc and u_0 the velocity before the first sweep, so
+ * that these terms add up to zero over the axes; u^up is the upwind velocity
+ * with a limited slope. Cut leaves have no slope: nearly all their grains may
+ * leave in one sweep, and what stays behind must keep a velocity between those
+ * around it. A uniform velocity is kept to round-off whatever the density
+ * ratio. A face next to a band leaf carries this one flux; the pure leaf on
+ * its other side takes it as u* = u - dt/(h rho) [M u^up - M u]_d and has its
+ * other faces served by the Bell-Colella-Glaz step (advection.h), so that
+ * momentum crosses each face once.
  */
 #ifndef TALUS_MOMENTUM_H
 #define TALUS_MOMENTUM_H
@@ -47,11 +45,12 @@ void momentum_flux(const struct mesh *mesh, int d, double dt,
                    const double *flux, const double *band, double *const u[DIM],
                    struct momentum_flux *out);
 
-/* Update of u in the leaves the fluxes touch, c_old: before the sweep;
- * density[0]: grains, [1]: gas. */
+/* Update of u in the leaves the fluxes touch. c_old: before the sweep;
+ * u_start: before the first; density[0]: grains, [1]: gas. */
 void momentum_update(const struct mesh *mesh, int d, double dt,
                      const double density[2], const double *u_f,
                      const double *c_old, const double *cc, const double *band,
+                     double *const u_start[DIM],
                      const struct momentum_flux *flux, double *const u[DIM]);
 
 #endif

@@ -73,6 +73,7 @@ void momentum_flux(const struct mesh *mesh, int d, double dt,
 void momentum_update(const struct mesh *mesh, int d, double dt,
                      const double density[2], const double *u_f,
                      const double *c_old, const double *cc, const double *band,
+                     double *const u_start[DIM],
                      const struct momentum_flux *flux, double *const u[DIM]) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t lower = mesh->cell_face[i][2 * d];
@@ -80,10 +81,11 @@ void momentum_update(const struct mesh *mesh, int d, double dt,
     const double k = dt / mesh->h[i];
     const double rho_old = density[1] + c_old[i] * (density[0] - density[1]);
     const double mass[2] = {flux->mass[lower], flux->mass[upper]};
-    double rho = rho_old;
+    double rho = rho_old, dilation = 0;
     if (band[i] > 0) {
-      const double rho_cc = cc[i] > 0 ? density[0] : density[1];
-      rho += k * (rho_cc * (u_f[upper] - u_f[lower]) - (mass[1] - mass[0]));
+      dilation =
+          (cc[i] > 0 ? density[0] : density[1]) * (u_f[upper] - u_f[lower]);
+      rho += k * (dilation - (mass[1] - mass[0]));
     } else if (mass[0] == 0 && mass[1] == 0) {
       continue;
     }
@@ -91,7 +93,8 @@ void momentum_update(const struct mesh *mesh, int d, double dt,
       const double *carried = flux->carried[e];
       u[e][i] -= k / rho *
                  ((carried[upper] - mass[1] * u[e][i]) -
-                  (carried[lower] - mass[0] * u[e][i]));
+                  (carried[lower] - mass[0] * u[e][i]) -
+                  dilation * (u_start[e][i] - u[e][i]));
     }
   }
 }

@@ -130,10 +130,10 @@ static void advance_tracer(struct simulation *sim, double dt, const double *u_f,
 
 static void sweep_grains(struct simulation *sim, int d, double dt) {
   const struct mesh *mesh = sim->mesh;
-  double density[2], *u[DIM];
+  double density[2], *u[DIM], *start[DIM];
   struct momentum_flux flux = {.mass = sim->face[1]->v};
   densities(sim, density);
-  velocities(sim->u, u);
+  velocities(sim->u, u), velocities(sim->u_old, start);
   for (int e = 0; e < DIM; e++) {
     flux.carried[e] = sim->face[2 + e]->v;
     flux.slope[e] = sim->cell[e]->v;
@@ -144,7 +144,7 @@ static void sweep_grains(struct simulation *sim, int d, double dt) {
   momentum_flux(mesh, d, dt, density, sim->u_f->v, sim->c_old->v,
                 sim->face[0]->v, sim->band->v, u, &flux);
   momentum_update(mesh, d, dt, density, sim->u_f->v, sim->c_old->v,
-                  sim->frozen->v, sim->band->v, &flux, u);
+                  sim->frozen->v, sim->band->v, start, &flux, u);
 }
 
 static void log_divergence(struct simulation *sim, double dt) {
@@ -478,9 +478,11 @@ struct solve_stats step_static_pressure(struct simulation *sim) {
     memset(rest[d], 0, (size_t)sim->mesh->ncells * sizeof(double));
     size = fmax(size, fabs(sim->params->gravity[d]));
   }
-  /* round-off: 1e-13 of the divergence gravity makes at a density jump */
+  /* 1e-13 of the divergence gravity makes at a density jump, but not below
+   * the round-off of p / (rho h^2) */
+  const double cells = exp2(sim->params->level_max);
   projection.tolerance =
-      1e-13 * size / sim->params->size * exp2(sim->params->level_max);
+      size * cells / sim->params->size * fmax(1e-13, 1e-16 * cells);
   projection_face_velocity(&projection, 1, rest, sim->face[1]->v);
   struct solve_stats stats =
       projection_project(&projection, 1, sim->face[1]->v, sim->p->v);
