@@ -50,7 +50,7 @@ local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
 local eta_max = param("eta_max", 10, "cap on viscosity, in rho sqrt(g L0^3)")
-local shift = param("shift", 0, "column edges moved by so many cells")
+local shift = param("shift", 0, "cells by which the side misses a face")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 local times = param("times", {0.66, 0.95, 1.24, 1.52, 2.28},
                     "times of the outlines, in sqrt(H0/g)")
@@ -60,9 +60,9 @@ param("reference", a == 6.26 and "reference/contact_dynamics_a6.26.csv" or "",
 local rho, g = 1, 1                     -- the units
 local rho_gas, eta_gas = 1e-3, 1e-4     -- rho, rho sqrt(g L0^3)
 local eta_min = rho * math.sqrt(g * d^3)
-local h = size / 2^level                -- edge of the finest cells
-local width = 1 + shift * h             -- of the column
-local height = a + shift * h
+local width, height = 1, a              -- of the column
+-- a box so much smaller that its cells end `shift` cells off the side
+local box = size / (1 + shift * size / 2^level)
 
 local profile_times = {}                -- in sqrt(L0/g): sqrt(H0/g) = sqrt(a)
 for i, t in ipairs(times) do profile_times[i] = t * math.sqrt(a) end
@@ -70,7 +70,7 @@ for i, t in ipairs(times) do profile_times[i] = t * math.sqrt(a) end
 return {
   title = "Collapse of a column of grains, a = " .. a,
   dimension = 2,
-  domain = { size = size, level = level, level_min = 4 },
+  domain = { size = box, level = level, level_min = 4 },
   gravity = { 0, -g },
 
   grains = {
@@ -95,7 +95,7 @@ return {
     right = "no_slip",
     bottom = "no_slip",
     -- so that the pressure of the gas vanishes at the floor
-    top = { "outflow", pressure = -rho_gas * g * size },
+    top = { "outflow", pressure = -rho_gas * g * box },
   },
 
   adapt = { { "interface", width = 3 }, { "inside" } },
