@@ -302,7 +302,7 @@ def colours(snapshot, window, spacing, values, norm, cmap):
     return rgba
 
 
-def draw_bar(cax, norm, cmap, unit):
+def draw_bar(cax, norm, cmap):
     bar = cax.figure.colorbar(ScalarMappable(norm, cmap), cax=cax)
     log = isinstance(norm, LogNorm)
     bar.outline.set_linewidth(0.5)
@@ -312,7 +312,6 @@ def draw_bar(cax, norm, cmap, unit):
     bar.update_ticks()
     bar.ax.yaxis.set_minor_locator(NullLocator())
     bar.ax.tick_params(labelsize=8)
-    bar.ax.set_title(unit, fontsize=9, loc="left", pad=5)
 
 
 def norm_of(values, log=False):
@@ -324,7 +323,7 @@ def norm_of(values, log=False):
 
 
 def panels_of(snapshot, units):
-    """[(title, unit, values, norm, cmap)] of the fields to show."""
+    """[(title, values, norm, cmap)] of the fields to show."""
     fields = snapshot.fields
     grains = fields[FRACTION] > 0.5 if FRACTION in fields else np.ones(
         len(snapshot.low), bool)
@@ -338,7 +337,7 @@ def panels_of(snapshot, units):
                             ("viscosity", "cividis", True)):
         if name in fields:
             found.append((name, name, fields[name], cmap, log))
-    return [(title, units.field(snapshot.units[name]), values,
+    return [(label(title, units.field(snapshot.units[name])), values,
              norm_of(values[grains], log), cmap)
             for name, title, values, cmap, log in found]
 
@@ -359,15 +358,15 @@ def plot_fields(options, parameters, units):
     draw_leaves(sheet.axes[0], snapshot, window, fraction, Normalize(0, 1),
                 GRAINS, not options.no_grid)
     draw_contours(sheet.axes[0], snapshot, window, spacing, RED)
-    draw_bar(sheet.bars[0], Normalize(0, 1), GRAINS, "")
+    draw_bar(sheet.bars[0], Normalize(0, 1), GRAINS)
     sheet.axes[0].set_title("volume fraction of grains"
                             + ("" if options.no_grid else ", and the grid"),
                             loc="left", pad=4)
-    for ax, bar, (title, unit, values, norm, cmap) in zip(
+    for ax, bar, (title, values, norm, cmap) in zip(
             sheet.axes[1:], sheet.bars[1:], panels):
         draw_grains(ax, snapshot, window, spacing, values, norm, cmap)
         draw_contours(ax, snapshot, window, spacing, "white")
-        draw_bar(bar, norm, cmap, unit)
+        draw_bar(bar, norm, cmap)
         ax.set_title(title, loc="left", pad=4)
     for ax in sheet.axes:
         ax.set_xlim(window[0], window[1])
@@ -473,7 +472,7 @@ def make_film(options, parameters, units):
     ax = sheet.axes[0]
     image = draw_grains(ax, snapshots[0], window, spacing, speed(snapshots[0]),
                         norm, cmap)
-    draw_bar(sheet.bars[0], norm, cmap, units.field("m/s") or "speed")
+    draw_bar(sheet.bars[0], norm, cmap)
     sheet.name_axes(units)
     text = ax.set_title("", loc="left")
     sheet.head(title_of(parameters, options.directory))
@@ -488,7 +487,8 @@ def make_film(options, parameters, units):
         image.set_data(colours(snapshot, window, spacing, speed(snapshot), norm,
                                cmap))
         contours = draw_contours(ax, snapshot, window, spacing, "white")
-        text.set_text(f"$t$ = {snapshot.time:.2f} {units.time}, speed")
+        text.set_text(f"$t$ = {snapshot.time:.2f} {units.time}, "
+                      + label("speed", units.field("m/s")))
         for _, writer in writers:
             writer.grab_frame()
         for contour in contours:

@@ -43,6 +43,7 @@ struct field {
   int component; /* axis if part of a vector named `name` without the
                     suffix "_x", "_y", "_z"; else -1 */
   double *v;     /* owned */
+  double *saved; /* owned: copy made by fields_save, NULL before */
   struct bc bc[MESH_MAX_PATCHES];
 };
 
