@@ -299,22 +299,17 @@ static void say_end(const struct run *run, const char *why) {
   if (run->options->timing) say_timing(run);
 }
 
-/* The solvers gave up: what is on the disk stays as it is. */
+/* The solvers gave up; the state before the step is in the checkpoint. */
 static void say_failure(const struct run *run) {
   if (base_rank() != 0) return;
-  char line[512];
-  int n = snprintf(
-      line, sizeof line,
-      "the run gave up after step %" PRId64
-      ", time %.6g: a solve failed, or the fields are no longer finite; ",
-      run->sim->step, run->sim->time);
-  if (run->checkpoint_written)
-    snprintf(line + n, sizeof line - (size_t)n,
-             "the last good state is in %s, --restart goes on from it",
-             run->checkpoint_path);
-  else
-    snprintf(line + n, sizeof line - (size_t)n,
-             "there is no checkpoint yet (see checkpoint_every)");
+  char line[1024];
+  snprintf(line, sizeof line,
+           "the run gave up after step %" PRId64
+           ", time %.6g: a solve failed or the fields are no longer finite, "
+           "with smaller steps too (run.log says which); the state before "
+           "that is in %s, --restart goes on from it: try a larger tolerance, "
+           "more solver.max_iterations or a smaller eta_max",
+           run->sim->step, run->sim->time, run->checkpoint_path);
   fprintf(stderr, "talus: error: %s\n", line);
   log_info("error: %s", line);
 }
@@ -384,6 +379,7 @@ static int run_loop(struct run *run) {
     }
     int status = advance(run);
     if (status != EXIT_DONE) {
+      write_checkpoint(run);
       say_failure(run);
       return status;
     }

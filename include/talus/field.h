@@ -63,6 +63,11 @@ struct field *fields_find(const struct fields *fields, const char *name);
 void fields_reset(struct fields *fields, const struct mesh *mesh);
 void fields_destroy(struct fields *fields);
 
+/* Keep a copy of all fields with restart == true (cell fields: leaf values),
+ * and set them back to it. The mesh must not change in between. */
+void fields_save(struct fields *fields, const struct mesh *mesh);
+void fields_restore(struct fields *fields, const struct mesh *mesh);
+
 /* mesh_fill for fields with their own boundary conditions. Collective. */
 void field_fill(const struct mesh *mesh, struct field *field);
 void field_fill_many(const struct mesh *mesh, int n,

@@ -5,9 +5,10 @@
 
 struct simulation;
 
-/* Advance by one step of at most dt_max. Returns EXIT_DONE, or
- * EXIT_NUMERICAL when a solve failed or the fields are no longer finite (the
- * state is then of no use). Collective. */
+/* Advance by one step of at most dt_max. A step in which a solve fails, or
+ * the fields are no longer finite, is repeated with a smaller dt; returns
+ * EXIT_DONE, or EXIT_NUMERICAL when that does not help: the state is then
+ * that before the step. Collective. */
 int step_advance(struct simulation *sim, double dt_max);
 
 /* c lags half a step behind `time`. The first call takes it to `time` with

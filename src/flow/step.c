@@ -37,6 +37,10 @@
 #define STALL_SLACK 10
 #define STALL_FLOOR 1e-10
 
+/* A step that fails is repeated so often, each time with this part of dt. */
+enum { RETRIES = 3 };
+#define RETRY_FACTOR 0.25
+
 static void velocities(struct field *const field[DIM], double *v[DIM]) {
   for (int d = 0; d < DIM; d++) v[d] = field[d]->v;
 }
@@ -432,10 +436,8 @@ static bool has_failed(const struct simulation *sim) {
   return failed;
 }
 
-int step_advance(struct simulation *sim, double dt_max) {
-  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
-  double dt_c;
-  const double dt = choose_dt(sim, dt_max, &dt_c);
+/* Stages 3 to 8: the state at `time` + dt. */
+static void advance_state(struct simulation *sim, double dt, double dt_c) {
   advance_fractions(sim, dt_c);
   update_density(sim);
   update_viscosity(sim, sim->u_old);
@@ -446,11 +448,28 @@ int step_advance(struct simulation *sim, double dt_max) {
     diffuse_momentum(sim, dt);
     project(sim, dt);
   }
+}
+
+int step_advance(struct simulation *sim, double dt_max) {
+  const double dissipated = sim->energy.dissipated;
+  const double divergence = sim->divergence_volume;
+  double dt, dt_c;
+  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  fields_save(&sim->fields, sim->mesh);
+  for (int attempt = 0;; attempt++) {
+    dt = choose_dt(sim, dt_max, &dt_c);
+    advance_state(sim, dt, dt_c);
+    if (!has_failed(sim)) break;
+    fields_restore(&sim->fields, sim->mesh);
+    sim->energy.dissipated = dissipated;
+    sim->divergence_volume = divergence;
+    if (attempt == RETRIES) return EXIT_NUMERICAL;
+    dt_max = RETRY_FACTOR * dt;
+  }
   sim->time += dt;
   sim->dt = dt;
   sim->step++;
   measure(sim, dt);
-  if (has_failed(sim)) return EXIT_NUMERICAL;
   if (adapt_is_due(sim)) adapt_grid(sim);
   return EXIT_DONE;
 }

@@ -36,6 +36,8 @@ void fields_reset(struct fields *fields, const struct mesh *mesh) {
   for (int k = 0; k < fields->n; k++) {
     struct field *field = fields->field[k];
     mem_free(field->v);
+    mem_free(field->saved);
+    field->saved = NULL;
     field->v = MEM_NEW(double, field_length(field, mesh));
   }
 }
@@ -43,9 +45,34 @@ void fields_reset(struct fields *fields, const struct mesh *mesh) {
 void fields_destroy(struct fields *fields) {
   for (int k = 0; k < fields->n; k++) {
     mem_free(fields->field[k]->v);
+    mem_free(fields->field[k]->saved);
     mem_free(fields->field[k]);
   }
   fields->n = 0;
+}
+
+static size_t saved_length(const struct field *field, const struct mesh *mesh) {
+  return (size_t)(field->location == FIELD_CELL ? mesh->nleaves
+                                                : mesh->nfaces_all);
+}
+
+void fields_save(struct fields *fields, const struct mesh *mesh) {
+  for (int k = 0; k < fields->n; k++) {
+    struct field *field = fields->field[k];
+    if (!field->restart) continue;
+    const size_t n = saved_length(field, mesh);
+    if (!field->saved) field->saved = MEM_NEW(double, n);
+    memcpy(field->saved, field->v, n * sizeof(double));
+  }
+}
+
+void fields_restore(struct fields *fields, const struct mesh *mesh) {
+  for (int k = 0; k < fields->n; k++) {
+    struct field *field = fields->field[k];
+    if (!field->restart) continue;
+    CHECK(field->saved, "field '%s' was not saved", field->name);
+    memcpy(field->v, field->saved, saved_length(field, mesh) * sizeof(double));
+  }
 }
 
 void field_fill_many(const struct mesh *mesh, int n,
