@@ -33,9 +33,11 @@
 -- Cost. Level 10 (32 cells to L0, about 9,000 cells): ten seconds on one core.
 -- Level 9: two seconds; level 8: less than one.
 --
--- Expect. The column falls, spreads and comes to rest in about 2.3 sqrt(H0/g).
--- The front is then between 8.8 and 10.1 L0 (discrete grains: 9.7, Gerris:
--- 8.95), the top at about 1.3 L0; the core has become a thin triangle.
+-- Expect. The column falls and spreads. At 2.28 sqrt(H0/g) the front is between
+-- 8.8 and 10.1 L0 and still advances (discrete grains: 9.7, Gerris: 8.95), the
+-- top is at about 1.3 L0 and nearly at rest; what was the core lies as a bent
+-- band in the flank. With stop=12 the heap comes to rest with its front near
+-- 12 L0, at about 4 sqrt(H0/g).
 --
 -- Try. a=1.42 d=0.0219 stop=4.77 and a=0.5 d=0.0168 stop=2.83 (figures 9 and 8,
 -- to 4 sqrt(H0/g)); mu_s=0.4: a stiffer heap; delta_mu=0: friction that does

@@ -191,6 +191,32 @@ static void write_checkpoint(struct run *run) {
 
 /* Begin and end */
 
+/* Say which lines of parameters.csv differ from those of the run that goes on:
+ * most of them can be changed, but the grains are those of the first part. */
+static void say_changes(const struct run *run, FILE *before) {
+  char line[1024];
+  while (fgets(line, sizeof line, before)) {
+    line[strcspn(line, "\n")] = '\0';
+    const size_t length = strlen(line);
+    const char *at = length > 0 ? strstr(run->parameters, line) : line;
+    if (at && (at[length] == '\n' || at[length] == '\0')) continue;
+    log_info("restart with another parameter, it was: %s", line);
+    fprintf(stderr, "talus: restart with another parameter, it was: %s\n",
+            line);
+  }
+}
+
+static void compare_parameters(const struct run *run) {
+  if (base_rank() != 0 || !run->options->restart) return;
+  char *path = output_path(run->options->directory, "parameters.csv");
+  FILE *before = fopen(path, "r");
+  if (before) {
+    say_changes(run, before);
+    fclose(before);
+  }
+  mem_free(path);
+}
+
 static void open_files(struct run *run) {
   const struct simulation *sim = run->sim;
   const char *directory = run->options->directory;
@@ -203,6 +229,7 @@ static void open_files(struct run *run) {
   char *path = output_path(directory, "run.log");
   if (!log_open(path)) USER_ERROR("cannot write '%s'", path);
   mem_free(path);
+  compare_parameters(run);
   output_write_text(directory, "parameters.csv", run->parameters);
   /* the last digits of a time may have been lost on the way */
   double last = sim->time + 1e-12 * fabs(run->params->stop);

@@ -527,7 +527,9 @@ def parse_options():
 def main():
     options = parse_options()
     if not (options.directory / "series.csv").is_file():
-        sys.exit(f"plot: '{options.directory}' holds no run (no series.csv)")
+        print(f"talus: error: '{options.directory}' holds no run (no series.csv)",
+              file=sys.stderr)
+        sys.exit(2)
     options.output.mkdir(parents=True, exist_ok=True)
     parameters = run_data.read_parameters(options.directory)
     units = Units(parameters)

@@ -109,8 +109,10 @@ void output_remove_snapshots(const char *directory, int first) {
 }
 
 void output_remove_run(const char *directory) {
-  static const char *const name[] = {"checkpoint.h5", "checkpoint.h5.tmp",
-                                     "run.log", "snapshots.xdmf"};
+  static const char *const name[] = {
+      "checkpoint.h5",  "checkpoint.h5.tmp", "run.log",
+      "snapshots.xdmf", "outlines.png",      "fields-final.png",
+      "film.gif",       "film.mp4",          "history.png"};
   if (base_rank() == 0)
     for (size_t k = 0; k < sizeof name / sizeof name[0]; k++)
       remove_file(directory, name[k]);

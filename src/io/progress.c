@@ -77,7 +77,8 @@ static void update_rates(struct progress *p, double now, int64_t step,
   p->step_rate = step;
 }
 
-/* The line proper, in `line` [size]. */
+/* The line proper, in `line` [size]; under 80 columns, or a terminal would
+ * wrap it. "/s" are steps per second. */
 static void format_line(const struct progress *p, int64_t step, double time,
                         double dt, int64_t cells, size_t size, char *line) {
   char left[32];
@@ -86,8 +87,8 @@ static void format_line(const struct progress *p, int64_t step, double time,
       p->time_per_second > 0 ? (p->stop - time) / p->time_per_second : -1,
       left);
   snprintf(line, size,
-           "time %.4g of %.4g (%.0f %%)  step %" PRId64 "  dt %.2e  %" PRId64
-           " cells  %.1f steps/s  %s left",
+           "time %.4g of %g (%.0f %%), step %" PRId64 ", dt %.1e, %" PRId64
+           " cells, %.3g/s, %s left",
            time, p->stop, done, step, dt, cells, p->steps_per_second, left);
 }
 

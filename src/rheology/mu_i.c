@@ -2,9 +2,10 @@
 /*
  * The mu(I) rheology: eta = mu(I) p/gamma with
  *
- *   I = gamma d/sqrt(p/rho)                [lagree_staron_popinet_2011,
- * eq. 2.2] mu(I) = mu_s + delta_mu/(I_0/I + 1) [eq. 2.3]
+ *   I = gamma d/sqrt(p/rho)
+ *   mu(I) = mu_s + delta_mu/(I_0/I + 1)
  *
+ * [lagree_staron_popinet_2011, eqs. 2.2 and 2.3 corrected],
  * written as a yield stress and a plastic viscosity [valette_2019, eqs. 4-5]
  *
  *   tau_y = mu_s p
