@@ -5,7 +5,8 @@
  *                                         [lagree_staron_popinet_2011,
  *                                          eqs. 2.11-2.13]
  * alpha = 1/rho on faces. MAC projection: u_f* is predicted at half steps.
- * Approximate projection: u_f* is the mean of the cell velocities plus
+ * Approximate projection: u_f* is the mean momentum of the cells over their
+ * density plus
  * gravity; the cells then receive the mean of (gravity - alpha grad p) of
  * their faces, so that hydrostatic balance is kept to round-off.
  */

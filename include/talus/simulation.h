@@ -67,20 +67,17 @@ struct simulation {
   double scale;             /* largest speed, of the viscous tolerance */
   double max_speed;         /* of the grains, m/s */
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
-  double mesh_seconds;      /* wall time spent on adaptation */
 };
 
 /* Initial state of the case: grid adapted to it, fields set, static
  * pressure. Collective. Owned by the caller. */
 struct simulation *simulation_new(const struct params *params);
 /* The same fields on a given forest (which it takes over), all zero, for a
- * restart: io then fills `fields`, and the caller sets time, dt, step,
- * travel, energy. */
+ * restart: io then fills `fields`, and the caller sets all scalars. */
 struct simulation *simulation_new_on(const struct params *params,
                                      struct forest *forest);
 void simulation_destroy(struct simulation *sim);
-/* Forest layout of the case, and the patch of a boundary face (`context` is
- * the params). */
+/* Forest layout of the case. */
 struct forest_layout;
 void simulation_layout(const struct params *params,
                        struct forest_layout *layout);

@@ -17,7 +17,9 @@ int step_advance(struct simulation *sim, double dt_max);
 void step_synchronise(struct simulation *sim);
 void step_desynchronise(struct simulation *sim);
 
-/* Static pressure at t = 0: u = 0, no viscosity; sets p and g. Collective. */
-struct solve_stats step_static_pressure(struct simulation *sim);
+/* Complete the state at t = 0 from c, u and a first u_f: u_f is projected,
+ * p and g are those of the grains at rest (no viscosity), to round-off.
+ * Collective. */
+void step_start(struct simulation *sim);
 
 #endif

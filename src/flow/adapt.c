@@ -2,7 +2,6 @@
 #include "talus/adapt.h"
 
 #include <math.h>
-#include <mpi.h>
 #include <string.h>
 
 #include "talus/error.h"
@@ -187,7 +186,9 @@ void adapt_flags(struct simulation *sim, int8_t *flag) {
 bool adapt_is_due(const struct simulation *sim) {
   const struct params *params = sim->params;
   if (params->ncriteria == 0) return false;
-  if (params->adapt_every > 0) return sim->step % params->adapt_every == 0;
+  if (params->adapt_every > 0 && sim->step % params->adapt_every == 0) {
+    return true;
+  }
   double spare = 4; /* cells the surface may move */
   for (int k = 0; k < params->ncriteria; k++) {
     if (params->criterion[k].type == CRITERION_INTERFACE) {
@@ -198,7 +199,6 @@ bool adapt_is_due(const struct simulation *sim) {
 }
 
 bool adapt_grid(struct simulation *sim) {
-  const double start = MPI_Wtime();
   int8_t *flag = MEM_NEW(int8_t, sim->mesh->nleaves);
   struct forest_map map;
   field_fill(sim->mesh, sim->c);
@@ -209,6 +209,5 @@ bool adapt_grid(struct simulation *sim) {
   forest_map_destroy(&map);
   mem_free(flag);
   sim->travel = 0;
-  sim->mesh_seconds += MPI_Wtime() - start;
   return changed;
 }

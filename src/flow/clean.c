@@ -25,7 +25,6 @@ struct clean {
   int32_t *root;            /* [ntrees] node, -1: on another rank */
   int32_t ntrees;
   int trees[DIM];
-  bool periodic[DIM];
   uint64_t tree_span;
   int32_t *tree_number; /* [ntrees] curve number of the tree at a place */
   int32_t nslots;
@@ -111,7 +110,6 @@ static void number_trees(struct clean *clean, const struct mesh *mesh) {
   clean->ntrees = 1;
   for (int d = 0; d < DIM; d++) {
     clean->trees[d] = layout->trees[d];
-    clean->periodic[d] = layout->periodic[d];
     clean->ntrees *= layout->trees[d];
   }
   clean->tree_span = mesh_key_span(0);

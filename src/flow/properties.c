@@ -248,7 +248,11 @@ static void mix_viscosity(const struct mesh *mesh, const struct rheology *gas,
       const double theta = theta_f[begin + k];
       const double mixed =
           1 / (theta / eta_f[begin + k] + (1 - theta) / eta_gas[k]);
-      eta_f[begin + k] = theta < PROPERTIES_GAS ? eta_gas[k] : mixed;
+      if (theta < PROPERTIES_GAS) {
+        eta_f[begin + k] = eta_gas[k];
+      } else if (theta < 1 - PROPERTIES_GAS) {
+        eta_f[begin + k] = mixed;
+      }
     }
   }
 }

@@ -52,7 +52,6 @@ static void set_patch(struct simulation *sim, int patch, int axis,
         MESH_MAX_PATCHES);
   const bool open = boundary->type == BOUNDARY_OUTFLOW;
   sim->open[patch] = open;
-  sim->pressure_set |= open;
   sim->closed[patch] = !open;
   for (int e = 0; e < DIM; e++) {
     struct bc *bc = &sim->u[e]->bc[patch];
@@ -69,7 +68,8 @@ static void set_patch(struct simulation *sim, int patch, int axis,
         *bc = (struct bc){BC_NEUMANN, 0, 0};
       }
     } else {
-      bc->type = BC_DIRICHLET;
+      bc->type = BC_DIRICHLET; /* a wall moves along itself only */
+      if (boundary->type == BOUNDARY_NO_SLIP && e == axis) bc->value = 0;
     }
     sim->u_old[e]->bc[patch] = *bc;
   }
@@ -78,6 +78,9 @@ static void set_patch(struct simulation *sim, int patch, int axis,
   }
   if (boundary->type == BOUNDARY_INFLOW) {
     sim->c->bc[patch] = (struct bc){BC_DIRICHLET, boundary->fraction, 0};
+    for (int k = 0; k < sim->params->ntracers; k++) {
+      sim->tracer[k]->bc[patch] = (struct bc){BC_DIRICHLET, 0, 0};
+    }
   }
 }
 
@@ -90,6 +93,27 @@ static void set_boundaries(struct simulation *sim) {
     for (int axis = 0; axis < DIM; axis++) {
       set_patch(sim, patch_of(b, axis), axis, &params->boundary[b]);
     }
+  }
+}
+
+/* Does some face of the box set the pressure? */
+static void find_openings(struct simulation *sim) {
+  const struct params *params = sim->params;
+  double open = 0;
+  bool meant = false;
+  for (int32_t f = 0; f < sim->mesh->nfaces; f++) {
+    const int patch = sim->mesh->face_patch[f];
+    if (patch >= 0 && sim->open[patch]) open = 1;
+  }
+  sim->pressure_set = mesh_max(sim->mesh, open) > 0;
+  for (int b = 0; b < params->nboundaries; b++) {
+    meant = meant || params->boundary[b].type == BOUNDARY_OUTFLOW;
+  }
+  if (meant && !sim->pressure_set && !params->pressure_level_given) {
+    USER_ERROR(
+        "no face of the box takes the outflow that the case names, so "
+        "nothing sets the pressure: let a side choose it, or give "
+        "boundary.pressure_level");
   }
 }
 
@@ -142,7 +166,7 @@ static void add_scratch(struct simulation *sim) {
                                      "face_4"};
   sim->rho = add_cell(sim, "density", "kg/m^3", "density", REMAP_NONE, false);
   sim->eta = add_cell(sim, "viscosity", "Pa s", "viscosity, mean of the faces",
-                      REMAP_NONE, true);
+                      REMAP_AVERAGE, true);
   sim->frozen = add_cell(sim, "frozen", "1", "", REMAP_NONE, false);
   sim->plane = add_cell(sim, "plane", "1", "", REMAP_NONE, false);
   sim->band = add_cell(sim, "band", "1", "", REMAP_NONE, false);
@@ -180,6 +204,7 @@ struct simulation *simulation_new_on(const struct params *params,
   add_state(sim);
   add_scratch(sim);
   set_boundaries(sim);
+  find_openings(sim);
   return sim;
 }
 
@@ -194,7 +219,7 @@ void simulation_destroy(struct simulation *sim) {
 }
 
 /* Fractions of a shape. Coarse leaves are divided more often, so that what
- * the finest grid would see is not missed. */
+ * is DEEPEST levels finer is not missed. */
 static void fill_shape(const struct simulation *sim,
                        const struct function *shape, struct field *field) {
   enum { DEEPEST = 6, SURFACE = 3 };
@@ -245,7 +270,7 @@ static void fill_face_velocity(struct simulation *sim) {
       sim->u_f->v[f] = function->eval(function->context, x);
     }
   }
-  clean_face_velocity(sim->clean, mesh, sim->open, sim->u_f->v);
+  field_fill_faces(mesh, sim->u_f);
 }
 
 struct simulation *simulation_new(const struct params *params) {
@@ -261,6 +286,6 @@ struct simulation *simulation_new(const struct params *params) {
     fill_state(sim);
   }
   fill_face_velocity(sim);
-  sim->pressure = step_static_pressure(sim);
+  step_start(sim);
   return sim;
 }

@@ -247,6 +247,22 @@ static void update_viscosity(struct simulation *sim,
       sim->face[0]->v, work, sim->eta_f->v);
 }
 
+/* Make u_f solenoidal by a pressure of its own: to the tolerance by a
+ * projection over dt, then to round-off by cleaning. */
+static struct solve_stats make_solenoidal(struct simulation *sim, double dt,
+                                          double *u_f) {
+  struct projection projection = projection_of(sim);
+  struct field *phi = sim->frozen;
+  struct bc bc[MESH_MAX_PATCHES];
+  memcpy(bc, sim->p->bc, sizeof bc);
+  for (int k = 0; k < MESH_MAX_PATCHES; k++) bc[k].value = 0;
+  projection.bc = bc;
+  memset(phi->v, 0, (size_t)sim->mesh->ncells * sizeof(double));
+  struct solve_stats stats = projection_project(&projection, dt, u_f, phi->v);
+  clean_face_velocity(sim->clean, sim->mesh, sim->open, u_f);
+  return stats;
+}
+
 /* Stage 5: u_f at half steps, made exactly solenoidal, carries momentum away
  * from the interface. */
 static void advect_momentum(struct simulation *sim, double dt) {
@@ -261,16 +277,7 @@ static void advect_momentum(struct simulation *sim, double dt) {
   }
   field_fill_many(mesh, DIM, sim->g);
   advection_predict(mesh, dt, u, g, sim->closed, &work, sim->u_half->v);
-  struct projection projection = projection_of(sim);
-  struct field *phi = sim->frozen; /* the small pressure of this half step */
-  struct bc bc[MESH_MAX_PATCHES];
-  memcpy(bc, sim->p->bc, sizeof bc);
-  for (int k = 0; k < MESH_MAX_PATCHES; k++) bc[k].value = 0;
-  projection.bc = bc;
-  memset(phi->v, 0, (size_t)mesh->ncells * sizeof(double));
-  sim->predictor =
-      projection_project(&projection, 0.5 * dt, sim->u_half->v, phi->v);
-  clean_face_velocity(sim->clean, mesh, sim->open, sim->u_half->v);
+  sim->predictor = make_solenoidal(sim, 0.5 * dt, sim->u_half->v);
   advection_momentum(mesh, dt, u, g, sim->u_half->v,
                      sim->params->single_phase ? NULL : sim->band->v, &work,
                      out);
@@ -378,21 +385,39 @@ static void project(struct simulation *sim, double dt) {
   }
 }
 
+/* Does the grid follow more than the surface? */
+static bool follows_velocity(const struct params *params) {
+  bool found = params->single_phase;
+  for (int k = 0; k < params->ncriteria; k++) {
+    found = found || params->criterion[k].type == CRITERION_ESTIMATE;
+  }
+  return found;
+}
+
+static void set_cell_viscosity(struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double sum = 0;
+    for (int f = 0; f < NFACE; f++) sum += sim->eta_f->v[mesh->cell_face[i][f]];
+    sim->eta->v[i] = sum / NFACE;
+  }
+}
+
 /* Stage 9: what the step did, for the csv and for adaptation. */
 static void measure(struct simulation *sim, double dt) {
   const struct mesh *mesh = sim->mesh;
+  const bool everywhere = follows_velocity(sim->params);
   double speed = 0, travel = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double c = sim->c->v[i];
-    double u2 = 0, eta = 0, face = 0;
+    double u2 = 0, face = 0;
     for (int e = 0; e < DIM; e++) u2 += sim->u[e]->v[i] * sim->u[e]->v[i];
     for (int f = 0; f < NFACE; f++) {
-      eta += sim->eta_f->v[mesh->cell_face[i][f]] / NFACE;
       face = fmax(face, fabs(sim->u_f->v[mesh->cell_face[i][f]]));
     }
-    sim->eta->v[i] = eta;
     if (c > 0.5) speed = fmax(speed, sqrt(u2));
-    if (vof_is_cut(c)) travel = fmax(travel, face * dt / mesh->h[i]);
+    if (everywhere || vof_is_cut(c))
+      travel = fmax(travel, face * dt / mesh->h[i]);
   }
   sim->max_speed = mesh_max(mesh, speed);
   sim->travel += mesh_max(mesh, travel);
@@ -426,6 +451,10 @@ static bool has_failed(const struct simulation *sim) {
     const double tolerance = k < 2 ? params->tolerance_pressure
                                    : params->tolerance_viscous * sim->scale;
     if (is_solved(solve[k], tolerance)) continue;
+    if (solve[k]->status == SOLVE_INCOMPATIBLE) {
+      log_info("step %lld: %s solve: what flows in does not flow out",
+               (long long)sim->step, name[k]);
+    }
     log_info(
         "step %lld: %s solve stalled after %d iterations, residual %g of "
         "%g, tolerance %g",
@@ -470,6 +499,7 @@ int step_advance(struct simulation *sim, double dt_max) {
   sim->dt = dt;
   sim->step++;
   measure(sim, dt);
+  set_cell_viscosity(sim);
   if (adapt_is_due(sim)) adapt_grid(sim);
   return EXIT_DONE;
 }
@@ -488,10 +518,10 @@ void step_desynchronise(struct simulation *sim) {
   memcpy(sim->c->v, sim->c_old->v, (size_t)sim->mesh->nleaves * sizeof(double));
 }
 
-struct solve_stats step_static_pressure(struct simulation *sim) {
+/* Pressure and acceleration of the state at rest, without viscosity. */
+static struct solve_stats static_pressure(struct simulation *sim) {
   struct projection projection = projection_of(sim);
   double *rest[DIM], *g[DIM], size = 0;
-  update_density(sim);
   velocities(sim->u_old, rest), velocities(sim->g, g);
   for (int d = 0; d < DIM; d++) {
     memset(rest[d], 0, (size_t)sim->mesh->ncells * sizeof(double));
@@ -508,4 +538,13 @@ struct solve_stats step_static_pressure(struct simulation *sim) {
   anchor_pressure(sim);
   projection_acceleration(&projection, sim->face[1]->v, g);
   return stats;
+}
+
+void step_start(struct simulation *sim) {
+  update_density(sim);
+  const double divergence = clean_divergence(sim->mesh, sim->u_f->v);
+  if (divergence > 0) make_solenoidal(sim, 1 / divergence, sim->u_f->v);
+  sim->pressure = static_pressure(sim);
+  update_viscosity(sim, sim->u);
+  set_cell_viscosity(sim);
 }

@@ -69,7 +69,8 @@ void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
     const int32_t leaf = mesh->face_leaf[f][upwind];
     double fraction;
     if (leaf < 0) { /* carried in through a boundary */
-      fraction = fmin(fmax(c[mesh->face_node[f][upwind]], 0), 1);
+      const int32_t *node = mesh->face_node[f];
+      fraction = fmin(fmax(0.5 * (c[node[0]] + c[node[1]]), 0), 1);
     } else if (!vof_is_cut(c[leaf]) || u == 0) {
       fraction = c[leaf];
     } else {

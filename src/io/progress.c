@@ -87,8 +87,8 @@ static void format_line(const struct progress *p, int64_t step, double time,
       p->time_per_second > 0 ? (p->stop - time) / p->time_per_second : -1,
       left);
   snprintf(line, size,
-           "time %.4g of %g (%.0f %%), step %" PRId64 ", dt %.1e, %" PRId64
-           " cells, %.3g/s, %s left",
+           "t %.4g of %g (%.0f %%) step %" PRId64 " dt %.1e, %" PRId64
+           " cells, %.3g/s, left %s",
            time, p->stop, done, step, dt, cells, p->steps_per_second, left);
 }
 

@@ -116,7 +116,7 @@ static inline struct simulation *sim_new(const struct params *params,
     }
   }
   clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
-  sim->pressure = step_static_pressure(sim);
+  step_start(sim);
   return sim;
 }
 

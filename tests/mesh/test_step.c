@@ -288,6 +288,33 @@ START_TEST(the_mean_pressure_is_that_of_the_case) {
 }
 END_TEST
 
+static double one(void *context, const double x[3]) {
+  (void)context, (void)x;
+  return 1;
+}
+
+/* A channel filled from the left: what is inside is fraction U t, but for the
+ * half step by which c lags; nothing else comes in. */
+START_TEST(an_inflow_brings_its_fraction) {
+  struct params params = box_params(4);
+  double empty = -1;
+  params.gravity[DIM - 1] = 0;
+  params.grains.density = params.gas.density = 1;
+  params.shape = (struct function){below, &empty};
+  params.velocity[0] = (struct function){one, NULL};
+  params.boundary[0] = (struct boundary){
+      .type = BOUNDARY_INFLOW, .velocity = {1, 0, 0}, .fraction = 0.3};
+  params.boundary[1] = (struct boundary){.type = BOUNDARY_OUTFLOW};
+  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  const bool done = advance(sim, 6, 0.01);
+  const double carried = 0.3 * (sim->time - 0.5 * sim->dt);
+  const double volume = integral(sim->mesh, sim->c->v);
+  simulation_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_eq_tol(volume, carried, 1e-12);
+}
+END_TEST
+
 /* One iteration is not enough for a column that falls. */
 START_TEST(a_solve_that_fails_is_told) {
   struct params params = box_params(5);
@@ -314,6 +341,7 @@ Suite *step_suite(void) {
   tcase_add_loop_test(tc, a_dense_square_drifts_with_its_gas, 0, 2);
   tcase_add_test(tc, a_drop_falls_freely);
   tcase_add_test(tc, the_mean_pressure_is_that_of_the_case);
+  tcase_add_test(tc, an_inflow_brings_its_fraction);
   tcase_add_test(tc, a_solve_that_fails_is_told);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
