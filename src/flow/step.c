@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The time step of the two-phase incompressible model: step_advance is the
- * table of contents of the scheme, each call one stage of it.
+/* The time step of the two-phase incompressible model: step_advance
+ * and advance_state are the table of contents of the scheme, each call one
+ * stage of it.
  *
  * Invariants, between steps
  * 1. c, tracers, u, u_f, p, g are valid on leaves (u_f on all faces); ghosts
@@ -27,6 +28,7 @@
 
 /* From one step to the next dt grows by at most this factor. */
 #define DT_GROWTH 1.2
+/* dt is at most this times sqrt(h / acceleration of the grains). */
 #define DT_ACCELERATION 0.1
 /* A step that makes up for a last one too long is at least this part of the
  * bound. */
