@@ -150,7 +150,6 @@ static void write_tables(struct run *run) {
   step_desynchronise(sim);
   sim->energy.kinetic = d.kinetic;
   sim->energy.potential = d.potential;
-  sim->max_speed = d.max_speed;
   if (sim->step == 0) sim->energy.initial = d.kinetic + d.potential;
   if (row) write_row(run, &d);
   if (outline)

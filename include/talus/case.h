@@ -46,10 +46,6 @@ char *case_read_text(const char *path);
 struct case_file *case_load_text(const char *path, const char *text,
                                  int noverrides, char *const overrides[]);
 
-/* The same for a file that this rank reads itself. */
-struct case_file *case_load(const char *path, int noverrides,
-                            char *const overrides[]);
-
 /* Frees the case and with it the functions that its params hold. */
 void case_destroy(struct case_file *file);
 

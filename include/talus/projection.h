@@ -41,8 +41,8 @@ struct solve_stats projection_project(const struct projection *projection,
 /* u_f [nfaces_all] = mean of the nodes' velocity, weighted by density, + dt
  * gravity; the boundary value on closed patches. u[d] filled. Collective.
  * The plain mean would give a light cell's velocity half the say in what the
- * projection then makes a heavy one do: beyond a density ratio of a hundred a
- * bed at rest would be unstable for dt > 2 sqrt(h rho_2 / (g rho_1)). */
+ * projection then makes a heavy one do: grains that move through gas at rest
+ * would be thrown forward at their sides (test_step.c). */
 void projection_face_velocity(const struct projection *projection, double dt,
                               double *const u[DIM], double *u_f);
 

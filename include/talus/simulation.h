@@ -65,7 +65,6 @@ struct simulation {
   struct solve_stats pressure, predictor, viscous; /* of the last step */
   struct energy energy;
   double scale;             /* largest speed, of the viscous tolerance */
-  double max_speed;         /* of the grains, m/s */
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
 };
 

@@ -79,15 +79,6 @@ struct case_file *case_load_text(const char *path, const char *text,
   return file;
 }
 
-struct case_file *case_load(const char *path, int noverrides,
-                            char *const overrides[]) {
-  char *text = case_read_text(path);
-  if (text == NULL) USER_ERROR("%s: %s", path, strerror(errno));
-  struct case_file *file = case_load_text(path, text, noverrides, overrides);
-  mem_free(text);
-  return file;
-}
-
 void case_destroy(struct case_file *file) {
   if (file == NULL) return;
   rows_destroy(file);

@@ -37,14 +37,10 @@ static double sum_total(const struct mesh *mesh, struct sum local) {
 }
 
 /* Volume fraction with valid helper nodes, a copy so that the state is left
- * alone; 1 everywhere if there is one phase only. [ncells], caller frees. */
+ * alone. [ncells], caller frees. */
 static double *copy_fraction(const struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
   double *c = MEM_NEW(double, (size_t)mesh->ncells);
-  if (sim->c == NULL) {
-    for (int32_t i = 0; i < mesh->ncells; i++) c[i] = 1;
-    return c;
-  }
   const struct bc *bc = sim->c->bc;
   memcpy(c, sim->c->v, sizeof(double) * (size_t)mesh->nleaves);
   mesh_fill(mesh, 1, &c, &bc, false);

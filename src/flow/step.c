@@ -405,23 +405,18 @@ static void set_cell_viscosity(struct simulation *sim) {
   }
 }
 
-/* Stage 9: what the step did, for the csv and for adaptation. */
-static void measure(struct simulation *sim, double dt) {
+/* Stage 9: how many cells the surface, or the flow, may have moved. */
+static void add_travel(struct simulation *sim, double dt) {
   const struct mesh *mesh = sim->mesh;
   const bool everywhere = follows_velocity(sim->params);
-  double speed = 0, travel = 0;
+  double travel = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double c = sim->c->v[i];
-    double u2 = 0, face = 0;
-    for (int e = 0; e < DIM; e++) u2 += sim->u[e]->v[i] * sim->u[e]->v[i];
+    if (!everywhere && !vof_is_cut(sim->c->v[i])) continue;
     for (int f = 0; f < NFACE; f++) {
-      face = fmax(face, fabs(sim->u_f->v[mesh->cell_face[i][f]]));
+      const double u = fabs(sim->u_f->v[mesh->cell_face[i][f]]);
+      travel = fmax(travel, u * dt / mesh->h[i]);
     }
-    if (c > 0.5) speed = fmax(speed, sqrt(u2));
-    if (everywhere || vof_is_cut(c))
-      travel = fmax(travel, face * dt / mesh->h[i]);
   }
-  sim->max_speed = mesh_max(mesh, speed);
   sim->travel += mesh_max(mesh, travel);
 }
 
@@ -500,7 +495,7 @@ int step_advance(struct simulation *sim, double dt_max) {
   sim->time += dt;
   sim->dt = dt;
   sim->step++;
-  measure(sim, dt);
+  add_travel(sim, dt);
   set_cell_viscosity(sim);
   if (adapt_is_due(sim)) adapt_grid(sim);
   return EXIT_DONE;

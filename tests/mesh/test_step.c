@@ -42,6 +42,41 @@ START_TEST(a_flat_bed_stays_still) {
 }
 END_TEST
 
+/* Grains in a block in the middle, [0.25, 0.75]^DIM. */
+static double block(void *context, const double x[3]) {
+  double outside = 0;
+  (void)context;
+  for (int d = 0; d < DIM; d++) outside = fmax(outside, fabs(x[d] - 0.5));
+  return 0.25 - outside;
+}
+
+static double block_speed(void *context, const double x[3]) {
+  return block(context, x) > 0;
+}
+
+/* A block a thousand times as dense as the gas at rest around it moves on as
+ * it was: its fastest leaf is at 1.002 (2D), 1.006 (3D) after three steps. With
+ * face velocities that are plain means of the cells', not weighted by density,
+ * it is at 1.016 and 1.013. */
+START_TEST(a_dense_block_moves_on_through_light_gas) {
+  struct params params = periodic_params(DIM == 2 ? 6 : 4);
+  params.single_phase = false;
+  params.pressure_level_given = true;
+  params.shape = (struct function){block, NULL};
+  params.velocity[0] = (struct function){block_speed, NULL};
+  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  const bool done = advance(sim, 3, 1);
+  double fastest = 0;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    if (sim->c->v[i] > 0.5) fastest = fmax(fastest, fabs(sim->u[0]->v[i]));
+  }
+  fastest = mesh_max(sim->mesh, fastest);
+  simulation_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_eq_tol(fastest, 1, 0.01);
+}
+END_TEST
+
 /* A column falls, the grid follows, the solvers stop early. */
 START_TEST(a_collapse_keeps_its_volume) {
   struct params params = box_params(DIM == 2 ? 6 : 4);
@@ -63,7 +98,7 @@ START_TEST(a_collapse_keeps_its_volume) {
     adapted = adapted || (double)forest_nleaves_global(sim->forest) != cells;
   }
   excess = mesh_max(sim->mesh, excess);
-  const double speed = sim->max_speed;
+  const double speed = largest(sim, sim->u);
   simulation_destroy(sim);
   ck_assert(done);
   ck_assert(adapted);
@@ -334,6 +369,7 @@ Suite *step_suite(void) {
   Suite *suite = suite_create("step");
   TCase *tc = tcase_create("step");
   tcase_add_loop_test(tc, a_flat_bed_stays_still, 0, 8);
+  tcase_add_test(tc, a_dense_block_moves_on_through_light_gas);
   tcase_add_loop_test(tc, a_collapse_keeps_its_volume, 0, 2);
   tcase_add_test(tc, the_answer_does_not_depend_on_ranks);
   tcase_add_loop_test(tc, a_taylor_green_flow_decays_as_it_should, 0, 2);
