@@ -35,19 +35,19 @@ LAUNCHER = $(wildcard src/launcher.c)
 MAIN     = $(wildcard src/main.c)
 SOURCES  = $(sort $(filter-out src/launcher.c src/main.c,$(wildcard src/*.c \
                   src/*/*.c)))
-UNIT     = $(sort $(wildcard tests/unit/test_*.c))
-MESH     = $(sort $(wildcard tests/mesh/test_*.c))
+LEVELS   = unit mesh convergence
 C_FILES  = $(sort $(wildcard include/talus/*.h src/*.[ch] src/*/*.[ch] \
                   tests/*/*.[ch]))
 PROGRAMS = $(if $(MAIN),$(BUILD)/talus2d $(BUILD)/talus3d) \
            $(LAUNCHER:src/launcher.c=$(BUILD)/talus)
 TESTS    = $(foreach d,2d 3d,$(BUILD)/$d/unit $(BUILD)/$d/mesh)
+PROOFS   = $(foreach d,2d 3d,$(BUILD)/$d/convergence)
 
 .DELETE_ON_ERROR:
 .SUFFIXES:
 # Targets that start programs; containers run as root and forbid CMA.
 RUNNING = check check-unit check-mesh check-case examples-check demo asan \
-          valgrind coverage
+          convergence valgrind coverage
 .PHONY: all debug tests setup format format-check check-includes \
         tidy compdb clean help FORCE $(RUNNING)
 $(foreach v,OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
@@ -67,12 +67,11 @@ tests: $(TESTS)
 
 # Texts the build depends on, written when they change: a change of flags or of
 # the list of files rebuilds what it must.
-STAMPS = flags sources unit_suites.inc mesh_suites.inc
+STAMPS = flags sources $(LEVELS:%=%_suites.inc)
 $(BUILD)/flags: TEXT = $(COMPILE) $(LDFLAGS) $(LDLIBS)
 $(BUILD)/sources: TEXT = $(SOURCES)
-suites = $(patsubst tests/$(1)/test_%.c,SUITE(%),$(2))
-$(BUILD)/unit_suites.inc: TEXT = $(call suites,unit,$(UNIT))
-$(BUILD)/mesh_suites.inc: TEXT = $(call suites,mesh,$(MESH))
+$(foreach l,$(LEVELS),$(eval $(BUILD)/$l_suites.inc: TEXT = $(patsubst \
+  tests/$l/test_%.c,SUITE(%),$(sort $(wildcard tests/$l/test_*.c)))))
 $(STAMPS:%=$(BUILD)/%): FORCE
 	@mkdir -p $(@D)
 	@echo "$(TEXT)" | cmp -s - $@ || echo "$(TEXT)" > $@
@@ -85,17 +84,17 @@ $(BUILD)/$(1)d/libtalus.a: $(SOURCES:%.c=$(BUILD)/$(1)d/%.o) $(BUILD)/sources
 	@rm -f $$@
 	$$(call say,$$@)ar qcs $$@ $$(filter %.o,$$^)
 $(BUILD)/talus$(1)d: $(BUILD)/$(1)d/src/main.o $(BUILD)/$(1)d/libtalus.a
-$(BUILD)/$(1)d/unit: $(BUILD)/$(1)d/tests/unit/main.o \
-  $(UNIT:%.c=$(BUILD)/$(1)d/%.o) $(BUILD)/$(1)d/libtalus.a
-$(BUILD)/$(1)d/mesh: $(BUILD)/$(1)d/tests/mesh/main.o \
-  $(MESH:%.c=$(BUILD)/$(1)d/%.o) $(BUILD)/$(1)d/libtalus.a
-$(BUILD)/$(1)d/tests/unit/main.o: $(BUILD)/unit_suites.inc
-$(BUILD)/$(1)d/tests/mesh/main.o: $(BUILD)/mesh_suites.inc
 endef
-$(foreach d,2 3,$(eval $(call rules,$d)))
+define test_rules # 1: the dimension, 2: the level
+$(BUILD)/$(1)d/$(2): $(patsubst %.c,$(BUILD)/$(1)d/%.o,$(sort $(wildcard \
+  tests/$(2)/*.c))) $(BUILD)/$(1)d/libtalus.a
+$(BUILD)/$(1)d/tests/$(2)/main.o: $(BUILD)/$(2)_suites.inc
+endef
+$(foreach d,2 3,$(eval $(call rules,$d)) \
+  $(foreach l,$(LEVELS),$(eval $(call test_rules,$d,$l))))
 $(BUILD)/talus: $(BUILD)/2d/src/launcher.o $(BUILD)/2d/libtalus.a
 $(TESTS): LDLIBS += $(CHECK_LIBS)
-$(PROGRAMS) $(TESTS):
+$(PROGRAMS) $(TESTS) $(PROOFS):
 	$(call say,$@)$(CC) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 -include $(shell find $(BUILD)/2d $(BUILD)/3d -name '*.d' 2>/dev/null)
 
@@ -114,6 +113,9 @@ check: setup ## all tests, in three minutes
 check-unit check-mesh check-case: check-%: ## one level of them
 	$(AGAIN) all tests
 	@tests/run.sh $(BUILD) $*
+convergence: ## proof of the numbers in 20 minutes; CASE=NAME, CASE=short
+	$(AGAIN) all $(PROOFS)
+	@tests/convergence/run.sh $(BUILD) $(CASE)
 examples-check: ## every example at low resolution against its `expect`
 	$(AGAIN) all
 	@tests/run.sh $(BUILD) examples
