@@ -288,14 +288,26 @@ static void run_destroy(struct run *run) {
   mem_free(run);
 }
 
+static void say_time(const struct run *run, const char *indent,
+                     const char *what, double seconds, double all) {
+  progress_say(run->progress, "  %s%-*s%9.3f s %5.1f %%", indent,
+               26 - (int)strlen(indent), what, seconds,
+               100 * seconds / fmax(all, 1e-9));
+}
+
 static void say_timing(const struct run *run) {
   static const char *const title[] = {
       "start", "steps", "tables (series, profile)", "snapshots", "checkpoints"};
+  static const char *const stage[NSTAGES] = {
+      "volume fraction", "density, gravity", "rheology",   "advection",
+      "viscous solve",   "pressure",         "adaptation", "other"};
   double all = 0;
   for (int k = 0; k < NTIMED; k++) all += run->seconds[k];
-  for (int k = 0; k < NTIMED; k++)
-    progress_say(run->progress, "  %-26s%9.3f s %5.1f %%", title[k],
-                 run->seconds[k], 100 * run->seconds[k] / fmax(all, 1e-9));
+  for (int k = 0; k < NTIMED; k++) {
+    say_time(run, "", title[k], run->seconds[k], all);
+    for (int s = 0; s < NSTAGES && k == TIME_STEP; s++)
+      say_time(run, "  ", stage[s], run->sim->seconds[s], all);
+  }
   progress_say(run->progress, "  per cell and step       %11.0f ns",
                1e9 * run->seconds[TIME_STEP] / fmax(run->cell_steps, 1));
 }

@@ -25,6 +25,19 @@ struct energy {
   double initial;    /* kinetic + potential at t = 0 */
 };
 
+/* Stages of a step (step.c), for --timing. */
+enum step_stage {
+  STAGE_FRACTION,   /* cleaning, VOF and the momentum that rides with it */
+  STAGE_DENSITY,    /* density and gravity */
+  STAGE_RHEOLOGY,   /* viscosity */
+  STAGE_ADVECTION,  /* of momentum, with its projection */
+  STAGE_VISCOUS,    /* implicit viscous solve */
+  STAGE_PROJECTION, /* pressure */
+  STAGE_ADAPTATION, /* grid, fields, mesh, hierarchy */
+  STAGE_OTHER,      /* dt, checks, copies */
+  NSTAGES
+};
+
 struct simulation {
   const struct params *params; /* borrowed */
   struct forest *forest;       /* owned, as all below */
@@ -66,6 +79,9 @@ struct simulation {
   struct energy energy;
   double scale;             /* largest speed, of the viscous tolerance */
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
+
+  double seconds[NSTAGES]; /* wall-clock time on this rank since the start */
+  double mark;             /* when the stage under way began */
 };
 
 /* Initial state of the case: grid adapted to it, fields set, static

@@ -462,17 +462,24 @@ static bool has_failed(const struct simulation *sim) {
   return failed;
 }
 
+/* The time since the last call was spent on this stage. */
+static void lap(struct simulation *sim, enum step_stage stage) {
+  const double now = MPI_Wtime();
+  sim->seconds[stage] += now - sim->mark;
+  sim->mark = now;
+}
+
 /* Stages 3 to 8: the state at `time` + dt. */
 static void advance_state(struct simulation *sim, double dt, double dt_c) {
-  advance_fractions(sim, dt_c);
-  update_density(sim);
+  advance_fractions(sim, dt_c), lap(sim, STAGE_FRACTION);
+  update_density(sim), lap(sim, STAGE_DENSITY);
   update_viscosity(sim, sim->u_old);
-  add_dissipation(sim, dt);
-  advect_momentum(sim, dt);
+  add_dissipation(sim, dt), lap(sim, STAGE_RHEOLOGY);
+  advect_momentum(sim, dt), lap(sim, STAGE_ADVECTION);
   for (int k = 0; k <= sim->params->picard; k++) {
-    repeat_properties(sim, k);
-    diffuse_momentum(sim, dt);
-    project(sim, dt);
+    repeat_properties(sim, k), lap(sim, STAGE_RHEOLOGY);
+    diffuse_momentum(sim, dt), lap(sim, STAGE_VISCOUS);
+    project(sim, dt), lap(sim, STAGE_PROJECTION);
   }
 }
 
@@ -480,10 +487,12 @@ int step_advance(struct simulation *sim, double dt_max) {
   const double dissipated = sim->energy.dissipated;
   const double divergence = sim->divergence_volume;
   double dt, dt_c;
+  sim->mark = MPI_Wtime();
   clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  lap(sim, STAGE_FRACTION);
   fields_save(&sim->fields, sim->mesh);
   for (int attempt = 0;; attempt++) {
-    dt = choose_dt(sim, dt_max, &dt_c);
+    dt = choose_dt(sim, dt_max, &dt_c), lap(sim, STAGE_OTHER);
     advance_state(sim, dt, dt_c);
     if (!has_failed(sim)) break;
     fields_restore(&sim->fields, sim->mesh);
@@ -496,8 +505,9 @@ int step_advance(struct simulation *sim, double dt_max) {
   sim->dt = dt;
   sim->step++;
   add_travel(sim, dt);
-  set_cell_viscosity(sim);
+  set_cell_viscosity(sim), lap(sim, STAGE_OTHER);
   if (adapt_is_due(sim)) adapt_grid(sim);
+  lap(sim, STAGE_ADAPTATION);
   return EXIT_DONE;
 }
 
