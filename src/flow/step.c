@@ -66,11 +66,27 @@ static struct projection projection_of(struct simulation *sim) {
                              .flux = sim->face[0]->v};
 }
 
+/* Largest speed that a boundary gives to a face, in leaves per time (per_leaf)
+ * or as it is: what a flow at rest is about to feel. This rank only. */
+static double boundary_speed(const struct simulation *sim, bool per_leaf) {
+  const struct mesh *mesh = sim->mesh;
+  double most = 0;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int patch = mesh->face_patch[f];
+    for (int e = 0; e < DIM && patch >= 0; e++) {
+      const struct bc *bc = &sim->u[e]->bc[patch];
+      if (bc->type != BC_DIRICHLET) continue;
+      most = fmax(most, fabs(bc->value) / (per_leaf ? mesh->face_h[f] : 1));
+    }
+  }
+  return most;
+}
+
 /* Largest dt with 1/2 sum |u_f| A dt / V <= cfl in every cell, gas included,
  * as VOF wants it. */
 static double cfl_bound(const struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
-  double rate = 0;
+  double rate = boundary_speed(sim, true);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double sum = 0;
     for (int f = 0; f < NFACE; f++) {
@@ -308,7 +324,7 @@ static void viscous_rhs(struct simulation *sim, double dt,
 
 /* Largest speed, or what gravity would make of rest in this step. */
 static double velocity_scale(const struct simulation *sim, double dt) {
-  double most = 1e-300;
+  double most = fmax(1e-300, boundary_speed(sim, false));
   for (int d = 0; d < DIM; d++) {
     most = fmax(most, dt * fabs(sim->params->gravity[d]));
   }

@@ -350,6 +350,27 @@ START_TEST(an_inflow_brings_its_fraction) {
 }
 END_TEST
 
+/* A lid starts to drag a fluid at rest: the speed of the lid, not that of the
+ * fluid, sets the first step and the tolerance of its solve. */
+START_TEST(a_moving_wall_is_felt_from_rest) {
+  struct params params = box_params(5);
+  params.single_phase = true;
+  params.gravity[DIM - 1] = 0;
+  params.pressure_level_given = true;
+  params.tolerance_viscous = 1e-4;
+  params.boundary[2 * DIM - 1] =
+      (struct boundary){.type = BOUNDARY_NO_SLIP, .velocity = {2, 0, 0}};
+  struct simulation *sim = simulation_new(&params);
+  const bool done = advance(sim, 1, 1);
+  const double dt = sim->dt;
+  const int iterations = sim->viscous.iterations;
+  simulation_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(dt, 0.5 / 32 / 2 + 1e-15); /* cfl h / U */
+  ck_assert_int_le(iterations, 5);
+}
+END_TEST
+
 /* One iteration is not enough for a column that falls. */
 START_TEST(a_solve_that_fails_is_told) {
   struct params params = box_params(5);
@@ -378,6 +399,7 @@ Suite *step_suite(void) {
   tcase_add_test(tc, a_drop_falls_freely);
   tcase_add_test(tc, the_mean_pressure_is_that_of_the_case);
   tcase_add_test(tc, an_inflow_brings_its_fraction);
+  tcase_add_test(tc, a_moving_wall_is_felt_from_rest);
   tcase_add_test(tc, a_solve_that_fails_is_told);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
