@@ -35,19 +35,19 @@ LAUNCHER = $(wildcard src/launcher.c)
 MAIN     = $(wildcard src/main.c)
 SOURCES  = $(sort $(filter-out src/launcher.c src/main.c,$(wildcard src/*.c \
                   src/*/*.c)))
-LEVELS   = unit mesh convergence
+LEVELS   = unit mesh convergence bench
 C_FILES  = $(sort $(wildcard include/talus/*.h src/*.[ch] src/*/*.[ch] \
                   tests/*/*.[ch]))
 PROGRAMS = $(if $(MAIN),$(BUILD)/talus2d $(BUILD)/talus3d) \
            $(LAUNCHER:src/launcher.c=$(BUILD)/talus)
 TESTS    = $(foreach d,2d 3d,$(BUILD)/$d/unit $(BUILD)/$d/mesh)
-PROOFS   = $(foreach d,2d 3d,$(BUILD)/$d/convergence)
+PROOFS   = $(foreach d,2d 3d,$(BUILD)/$d/convergence $(BUILD)/$d/bench)
 
 .DELETE_ON_ERROR:
 .SUFFIXES:
 # Targets that start programs; containers run as root and forbid CMA.
 RUNNING = check check-unit check-mesh check-case examples-check demo asan \
-          convergence valgrind coverage
+          convergence bench valgrind coverage
 .PHONY: all debug tests setup format format-check check-includes \
         tidy compdb clean help FORCE $(RUNNING)
 $(foreach v,OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
@@ -116,6 +116,9 @@ check-unit check-mesh check-case: check-%: ## one level of them
 convergence: ## proof of the numbers in 20 minutes; CASE=NAME, CASE=short
 	$(AGAIN) all $(PROOFS)
 	@tests/convergence/run.sh $(BUILD) $(CASE)
+bench: ## speed and memory, beside Gerris where it is installed; JOB=NAME
+	$(AGAIN) all $(PROOFS)
+	@$(PYTHON) tools/bench.py $(BUILD) $(JOB)
 examples-check: ## every example at low resolution against its `expect`
 	$(AGAIN) all
 	@tests/run.sh $(BUILD) examples

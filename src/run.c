@@ -16,6 +16,7 @@
 #include "talus/forest.h"
 #include "talus/log.h"
 #include "talus/memory.h"
+#include "talus/mesh.h"
 #include "talus/output.h"
 #include "talus/params.h"
 #include "talus/profile.h"
@@ -55,6 +56,8 @@ struct run {
   int64_t first_step;      /* the step then */
   double seconds[NTIMED];  /* where the time went */
   double cell_steps;
+  int64_t most_cells;
+  double memory; /* bytes on this rank before the simulation was made */
 };
 
 /* Time: nearly equal times are equal, so that no sliver of a step is left. */
@@ -266,6 +269,7 @@ static struct run *run_new(const struct params *params,
   run->parameters =
       output_parameters(options->write_parameters, options->context);
   run->checkpoint_written = options->restart;
+  run->memory = (double)mem_peak_resident();
   run->sim = options->restart
                  ? run_state_read(run->checkpoint_path, params, &run->before)
                  : simulation_new(params);
@@ -295,6 +299,7 @@ static void say_time(const struct run *run, const char *indent,
                100 * seconds / fmax(all, 1e-9));
 }
 
+/* Where the time went on rank 0, and the memory of all ranks. Collective. */
 static void say_timing(const struct run *run) {
   static const char *const title[] = {
       "start", "steps", "tables (series, profile)", "snapshots", "checkpoints"};
@@ -310,6 +315,10 @@ static void say_timing(const struct run *run) {
   }
   progress_say(run->progress, "  per cell and step       %11.0f ns",
                1e9 * run->seconds[TIME_STEP] / fmax(run->cell_steps, 1));
+  const double memory =
+      mesh_sum(run->sim->mesh, (double)mem_peak_resident() - run->memory);
+  progress_say(run->progress, "  memory per cell         %11.0f bytes",
+               memory / fmax((double)run->most_cells, 1));
 }
 
 static void say_end(const struct run *run, const char *why) {
@@ -399,7 +408,9 @@ static int advance(struct run *run) {
   double begin = MPI_Wtime(), event = next_event(run);
   int status = step_advance(sim, step_bound(run, event));
   if (same_time(run, sim->time, event)) sim->time = event;
-  run->cell_steps += (double)forest_nleaves_global(sim->forest);
+  const int64_t cells = forest_nleaves_global(sim->forest);
+  run->cell_steps += (double)cells;
+  if (cells > run->most_cells) run->most_cells = cells;
   lap(run, TIME_STEP, begin);
   return status;
 }

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "talus/error.h"
 
@@ -67,3 +68,9 @@ void mem_free(void *p) {
 }
 
 int64_t mem_live_blocks(void) { return live_blocks; }
+
+int64_t mem_peak_resident(void) {
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return (int64_t)usage.ru_maxrss * 1024; /* kilobytes on Linux */
+}
