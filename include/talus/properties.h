@@ -8,7 +8,8 @@
  * below the planes of the two leaves: phases in series, as a layer sheared
  * along its surface feels them. The mean of c would put gas between a cut
  * cell more than half full and the grains below it, and the top layer would
- * slide. eta of each phase comes from the face's own strain rate and pressure:
+ * slide. Both parts of a line share the stress, each with a shear rate of its
+ * own. eta of each phase comes from the face's own strain rate and pressure:
  *   shear_rate = sqrt(2 D:D), normal derivatives from the two nodes,
  *   tangential ones the mean of central differences at both; the pressure
  *   varies along the line as it does at rest, with slopes in proportion to

@@ -234,27 +234,72 @@ static void face_pressure(const struct mesh *mesh, const double density[2],
   }
 }
 
-/* eta_f of the grains mixed with that of the gas. */
-static void mix_viscosity(const struct mesh *mesh, const struct rheology *gas,
+/* Faces whose line lies in both phases, a block of them. */
+enum { BLOCK = 512 };
+struct mixed {
+  int32_t n, face[BLOCK];
+  double theta[BLOCK], p[BLOCK];
+  double shear[2][BLOCK], eta[2][BLOCK]; /* of grains and gas */
+};
+
+/* Two phases in series share the stress, not the shear rate: that of the line
+ * is gamma = theta gamma_1 + (1 - theta) gamma_2, eta_1 gamma_1 = eta_2
+ * gamma_2,   eta = 1 / (theta/eta_1 + (1-theta)/eta_2). Stresses grow with
+ * their rates, so gamma_1 is found by halving its range. Grains that took the
+ * rate of the whole line, most of which is the gas's, would give way too easily
+ * under a dense gas. */
+static void share_stress(const struct rheology *const phase[2],
+                         const double *shear_f, struct mixed *m,
+                         double *eta_f) {
+  enum { HALVINGS = 24 };
+  double low[BLOCK] = {0}, high[BLOCK];
+  for (int32_t i = 0; i < m->n; i++) {
+    high[i] = shear_f[m->face[i]] / m->theta[i];
+  }
+  for (int j = 0; j <= HALVINGS; j++) {
+    for (int32_t i = 0; i < m->n; i++) {
+      const double theta = m->theta[i], gamma = 0.5 * (low[i] + high[i]);
+      m->shear[0][i] = gamma;
+      m->shear[1][i] = (shear_f[m->face[i]] - theta * gamma) / (1 - theta);
+    }
+    for (int k = 0; k < 2; k++) {
+      rheology_eval(phase[k], m->n, m->shear[k], m->p, m->eta[k]);
+    }
+    for (int32_t i = 0; i < m->n; i++) {
+      const double excess =
+          m->eta[0][i] * m->shear[0][i] - m->eta[1][i] * m->shear[1][i];
+      *(excess > 0 ? &high[i] : &low[i]) = m->shear[0][i];
+    }
+  }
+  for (int32_t i = 0; i < m->n; i++) {
+    const double theta = m->theta[i];
+    eta_f[m->face[i]] = 1 / (theta / m->eta[0][i] + (1 - theta) / m->eta[1][i]);
+  }
+  m->n = 0;
+}
+
+/* eta_f of the grains (in) mixed with that of the gas. */
+static void mix_viscosity(const struct mesh *mesh,
+                          const struct rheology *const phase[2],
                           const double *theta_f, const double *shear_f,
                           const double *p_f, double *eta_f) {
-  enum { BLOCK = 512 };
   double eta_gas[BLOCK];
+  struct mixed m = {.n = 0};
   for (int32_t begin = 0; begin < mesh->nfaces; begin += BLOCK) {
     const int32_t n =
         begin + BLOCK < mesh->nfaces ? BLOCK : mesh->nfaces - begin;
-    rheology_eval(gas, n, shear_f + begin, p_f + begin, eta_gas);
+    rheology_eval(phase[1], n, shear_f + begin, p_f + begin, eta_gas);
     for (int32_t k = 0; k < n; k++) {
-      const double theta = theta_f[begin + k];
-      const double mixed =
-          1 / (theta / eta_f[begin + k] + (1 - theta) / eta_gas[k]);
-      if (theta < PROPERTIES_GAS) {
-        eta_f[begin + k] = eta_gas[k];
-      } else if (theta < 1 - PROPERTIES_GAS) {
-        eta_f[begin + k] = mixed;
+      const int32_t f = begin + k;
+      if (theta_f[f] < PROPERTIES_GAS) {
+        eta_f[f] = eta_gas[k];
+      } else if (theta_f[f] < 1 - PROPERTIES_GAS) {
+        m.face[m.n] = f, m.theta[m.n] = theta_f[f], m.p[m.n] = p_f[f];
+        if (++m.n == BLOCK) share_stress(phase, shear_f, &m, eta_f);
       }
     }
   }
+  share_stress(phase, shear_f, &m, eta_f);
 }
 
 void properties_viscosity(const struct mesh *mesh, const struct phase *grains,
@@ -269,6 +314,9 @@ void properties_viscosity(const struct mesh *mesh, const struct phase *grains,
   face_pressure(mesh, density, gravity, c, normal, plane, p, closed, theta_f,
                 p_f);
   rheology_eval(&grains->rheology, mesh->nfaces, shear_f, p_f, eta_f);
-  if (gas) mix_viscosity(mesh, &gas->rheology, theta_f, shear_f, p_f, eta_f);
+  if (gas) {
+    const struct rheology *const phase[2] = {&grains->rheology, &gas->rheology};
+    mix_viscosity(mesh, phase, theta_f, shear_f, p_f, eta_f);
+  }
   mesh_fill_faces(mesh, 1, &eta_f);
 }

@@ -299,8 +299,9 @@ START_TEST(phases_are_mixed_in_series_along_the_line) {
 }
 END_TEST
 
-/* Each phase has the viscosity of its own closure there: grains eta = mu p /
- * gamma, gas constant; halves of the line where the surface is a face. */
+/* Each phase has the viscosity of its own closure: grains mu p / gamma, gas
+ * constant. Where the surface is a face both halves of the line share the
+ * stress: the grains yield at mu p, and below that only the gas gives way. */
 START_TEST(each_phase_takes_its_own_closure) {
   struct bench *b = bench_new(1, true, 3, 3);
   const struct mesh *mesh = b->mesh;
@@ -320,11 +321,14 @@ START_TEST(each_phase_takes_its_own_closure) {
     const int32_t *node = mesh->face_node[f];
     const double c_f = 0.5 * (m.c->v[node[0]] + m.c->v[node[1]]);
     const double p_f = 0.5 * (m.p->v[node[0]] + m.p->v[node[1]]);
-    const double own = 0.4 * p_f / m.shear[f];
-    const double exact = 1 / (c_f / own + (1 - c_f) / 0.5);
+    const double yielded = 0.4 * p_f / m.shear[f];
+    const double exact = c_f == 1  ? yielded
+                         : c_f > 0 ? fmin(yielded, 0.5 / (1 - c_f))
+                                   : 0.5;
     most = fmax(most, fabs(m.eta[f] / exact - 1));
   }
-  ck_assert_double_le(mesh_max(mesh, most), 1e-14);
+  /* 24 halvings of the range of the grains' rate */
+  ck_assert_double_le(mesh_max(mesh, most), 1e-6);
   bench_destroy(b);
 }
 END_TEST
