@@ -139,7 +139,7 @@ static const struct boundary_kind BOUNDARY_KINDS[] = {
     {"navier_slip", BOUNDARY_NAVIER, {"slip_length"}, "slip_length",
      "wall, u = slip_length du/dn"},
     {"outflow", BOUNDARY_OUTFLOW, {"pressure"}, NULL,
-     "open, with this pressure"},
+     "open, with this pressure; what flows in is gas"},
     {"inflow", BOUNDARY_INFLOW, {"velocity", "fraction"}, "velocity",
      "open, with this velocity"},
     {"periodic", BOUNDARY_PERIODIC, {NULL}, NULL,

@@ -129,6 +129,18 @@ static double choose_dt(const struct simulation *sim, double dt_max,
   return dt;
 }
 
+/* What flows in through an opening is gas: the grains at it are not mirrored
+ * there. */
+static void keep_grains_out(const struct simulation *sim, int d,
+                            const double *u_f, double *flux) {
+  const struct mesh *mesh = sim->mesh;
+  for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+    const int patch = mesh->face_patch[f];
+    if (patch < 0 || !sim->open[patch]) continue;
+    if (mesh->face_leaf[f][u_f[f] > 0 ? 0 : 1] < 0) flux[f] = 0;
+  }
+}
+
 /* Stage 3: c, tracers and the momentum near the interface, axis by axis, in
  * an order that alternates from step to step. */
 static void sweep_tracer(struct simulation *sim, int d, double dt,
@@ -139,6 +151,7 @@ static void sweep_tracer(struct simulation *sim, int d, double dt,
   field_fill(mesh, tracer);
   vof_reconstruct(mesh, tracer->v, normal, sim->plane->v);
   vof_flux(mesh, d, dt, u_f, tracer->v, normal, sim->plane->v, sim->face[0]->v);
+  keep_grains_out(sim, d, u_f, sim->face[0]->v);
   vof_update(mesh, d, dt, u_f, sim->face[0]->v, sim->frozen->v, tracer->v);
 }
 

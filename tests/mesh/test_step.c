@@ -371,6 +371,27 @@ START_TEST(a_moving_wall_is_felt_from_rest) {
 }
 END_TEST
 
+/* Grains that touch an opening move away from it: what follows is gas, as
+ * below the outlet of a silo. */
+START_TEST(an_opening_lets_no_grains_in) {
+  struct params params = box_params(4);
+  params.gravity[DIM - 1] = 0;
+  params.shape = (struct function){column, NULL};
+  params.velocity[DIM - 1] = (struct function){one, NULL};
+  params.boundary[2 * DIM - 2] = params.boundary[2 * DIM - 1] =
+      (struct boundary){.type = BOUNDARY_OUTFLOW};
+  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  const double before = integral(sim->mesh, sim->c->v);
+  const bool done = advance(sim, 10, 0.02);
+  const double after = integral(sim->mesh, sim->c->v);
+  const double speed = largest(sim, sim->u);
+  simulation_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_gt(speed, 0.5); /* it has moved */
+  ck_assert_double_eq_tol(after / before, 1, 1e-12);
+}
+END_TEST
+
 /* One iteration is not enough for a column that falls. */
 START_TEST(a_solve_that_fails_is_told) {
   struct params params = box_params(5);
@@ -400,6 +421,7 @@ Suite *step_suite(void) {
   tcase_add_test(tc, the_mean_pressure_is_that_of_the_case);
   tcase_add_test(tc, an_inflow_brings_its_fraction);
   tcase_add_test(tc, a_moving_wall_is_felt_from_rest);
+  tcase_add_test(tc, an_opening_lets_no_grains_in);
   tcase_add_test(tc, a_solve_that_fails_is_told);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
