@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bagnold's profile with mu(I), mu_s = 0.38, delta_mu = 0.26, I0 = 0.3,
+ * d = 0.04, in a layer of thickness 1 on a slope, rho = g = 1: friction
+ * balances weight, so I is the same at all depths,
+ *   mu(I) = tan(slope),  du/dy = I/d sqrt(p/rho),  p = (1 - y) cos(slope),
+ *   u = 2/3 I/d sqrt(cos(slope)) (1 - (1 - y)^(3/2))
+ * [lagree_staron_popinet_2011, eqs. 2.24-2.26; the prefactor of 2.26 is
+ * misprinted, eq. 2.25 gives this one]. On 0.43 rad u(1) = 2.06631. */
+#ifndef TALUS_TESTS_BAGNOLD_H
+#define TALUS_TESTS_BAGNOLD_H
+
+#include "report.h"
+#include "runs.h"
+
+/* max |du/dt| of a flow that counts as steady (at the start it is 0.4), and of
+ * one whose distance from the steady one no longer shows. */
+static const double kBagnoldSteady = 1e-6, kBagnoldSettled = 1e-8;
+
+static inline double bagnold_inertial(double slope) {
+  const double t = tan(slope);
+  return 0.3 * (t - 0.38) / (0.38 + 0.26 - t);
+}
+
+static inline double bagnold_exact(double slope, double y) {
+  const double surface =
+      2. / 3 * bagnold_inertial(slope) / 0.04 * sqrt(cos(slope));
+  return surface * (1 - pow(1 - y, 1.5));
+}
+
+/* Error of u in every leaf, in sim->frozen, which is scratch. */
+static inline struct norms bagnold_norms(const struct simulation *sim,
+                                         double slope) {
+  double *error = sim->frozen->v;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    error[i] = sim->u[0]->v[i] - bagnold_exact(slope, sim->mesh->x[i][1]);
+  }
+  return norms_of(sim->mesh, error);
+}
+
+/* A leaf next to the surface. */
+static inline int32_t bagnold_top(const struct mesh *mesh) {
+  int32_t top = 0;
+  for (int32_t i = 1; i < mesh->nleaves; i++) {
+    if (mesh->x[i][1] > mesh->x[top][1]) top = i;
+  }
+  return top;
+}
+
+/* Relative error of u there. */
+static inline double bagnold_top_error(const struct simulation *sim,
+                                       double slope) {
+  const int32_t i = bagnold_top(sim->mesh);
+  const double exact = bagnold_exact(slope, sim->mesh->x[i][1]);
+  return fabs(sim->u[0]->v[i] - exact) / exact;
+}
+
+#endif
