@@ -52,6 +52,7 @@ local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
 local eta_max = param("eta_max", 10, "cap on viscosity, in rho sqrt(g L0^3)")
+local slip = param("slip", 0, "slip length of the floor, in L0; 0: rough")
 local shift = param("shift", 0, "cells by which the side misses a face")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 local times = param("times", {0.66, 0.95, 1.24, 1.52, 2.28},
@@ -95,7 +96,7 @@ return {
   boundary = {
     left = "symmetry",
     right = "no_slip",
-    bottom = "no_slip",
+    bottom = slip > 0 and { "navier_slip", slip_length = slip } or "no_slip",
     -- so that the pressure of the gas vanishes at the floor
     top = { "outflow", pressure = -rho_gas * g * box },
   },

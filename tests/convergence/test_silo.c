@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A silo empties through a slot of width D in its floor: examples/silo.lua,
+ * after [staron_2012]. Grains leave at a rate that does not depend on the
+ * height above, and that follows the law of Beverloo in two dimensions,
+ *   Q = C sqrt(g) (D + b)^(3/2);
+ * with Basilisk, in the same silo and with the same numbers, P.-Y. Lagree finds
+ * C = 1.50 and b = 0 (granular_sandglass.c); here C must be 1.435 to within
+ * 7 %, and b an error of the grid at the edge of the outlet, less than 1.5
+ * cells and shrinking with them.
+ *
+ * Q is minus the slope of V(t) while the flow is steady, 2 <= t <= 4. The
+ * grains start from rest, and their rate rises as Q (1 - exp(-t/T)) with T from
+ * 0.3 (the narrow outlet) to 0.65 (the wide one): it cannot be steady from 0.5
+ * on. The rows "t 0.5 to 3" show what the same numbers are there.
+ *
+ * Levels are those of the whole silo, 5/2^level; half of it is computed. */
+#include <gsl/gsl_fit.h>
+
+#include "report.h"
+#include "runs.h"
+#include "talus/clean.h"
+
+enum { WIDTHS = 6, MOST_STEPS = 4096 };
+/* Half-widths: 4, 6, ... 14 cells of 5/128 lie within them. */
+static const double kHalfWidth[WIDTHS] = {0.157,    0.235125, 0.31325,
+                                          0.391375, 0.4695,   0.547625};
+static const int kFew[] = {0, 2, 5}; /* of them, on level 8 */
+enum { FEW = sizeof kFew / sizeof *kFew };
+
+static const double kConstant = 1.435;
+struct window {
+  const char *name;
+  double begin, end;
+};
+static const struct window kSteady = {"t 2 to 4", 2, 4};
+static const struct window kEarly = {"t 0.5 to 3", 0.5, 3};
+
+/* Width of the outlet, in whole faces. */
+static double width_of(int k) { return 2 * (4 + 2 * k) * 5.0 / 128; }
+
+/* V(t) of a run, in the whole silo. */
+struct discharge {
+  bool good;
+  int n;
+  double time[MOST_STEPS], volume[MOST_STEPS];
+  double outflow;    /* that the face velocities at the outlet make */
+  double least;      /* of c at the outlet */
+  double slowest;    /* outward velocity there after t = 0.1 */
+  int iterations[2]; /* the most of pressure and viscosity after t = 0.1 */
+};
+
+/* Outward flux through the floor with which c is moved in the next step, and
+ * what is at the outlet. */
+static double outlet_flux(struct simulation *sim, struct discharge *out) {
+  const struct mesh *mesh = sim->mesh;
+  double *u_f = sim->u_half->v, sum = 0;
+  memcpy(u_f, sim->u_f->v, (size_t)mesh->nfaces_all * sizeof(double));
+  clean_face_velocity(sim->clean, mesh, sim->open, u_f);
+  for (int32_t f = mesh->face_begin[1]; f < mesh->face_begin[2]; f++) {
+    const int patch = mesh->face_patch[f];
+    const int32_t leaf = mesh->face_leaf[f][1];
+    if (patch < 0 || !sim->open[patch] || leaf < 0) continue;
+    if (mesh->x[leaf][1] > mesh->h[leaf]) continue;
+    sum -= u_f[f] * mesh->h[leaf];
+    out->least = fmin(out->least, sim->c->v[leaf]);
+    if (sim->time > 0.1) out->slowest = fmin(out->slowest, -u_f[f]);
+  }
+  return sum;
+}
+
+static void record(struct simulation *sim, double parts,
+                   struct discharge *out) {
+  const int count[2] = {sim->pressure.iterations, sim->viscous.iterations};
+  CHECK(out->n < MOST_STEPS, "more than %d steps", MOST_STEPS);
+  /* c is half a step behind */
+  out->time[out->n] = sim->time - 0.5 * sim->dt;
+  out->volume[out->n++] = parts * integral(sim->mesh, sim->c->v);
+  for (int k = 0; k < 2 && sim->step > 0; k++) {
+    if (sim->time > 0.1 && count[k] > out->iterations[k]) {
+      out->iterations[k] = count[k];
+    }
+  }
+}
+
+/* The silo with these overrides to time `stop`. parts: 2 for half a silo. */
+static void run_silo(const char *overrides, double parts, double stop,
+                     struct discharge *out) {
+  struct example example = example_new("silo", "%s", overrides);
+  struct simulation *sim = example.sim;
+  memset(out, 0, sizeof *out);
+  out->good = true;
+  out->least = out->slowest = HUGE_VAL;
+  record(sim, parts, out);
+  while (out->good && sim->time < stop - 1e-12) {
+    const double rate = parts * outlet_flux(sim, out), before = sim->dt;
+    out->good = step_advance(sim, stop - sim->time) == EXIT_DONE;
+    out->outflow += rate * 0.5 * (before + sim->dt);
+    record(sim, parts, out);
+  }
+  if (!out->good) out->volume[out->n - 1] = NAN;
+  example_destroy(&example);
+}
+
+/* Minus the slope of V(t) between two times. */
+static double rate_between(const struct discharge *run, double begin,
+                           double end) {
+  double c0, slope, cov00, cov01, cov11, sum;
+  int first = 0, n = 0;
+  while (first < run->n && run->time[first] < begin) first++;
+  while (first + n < run->n && run->time[first + n] <= end) n++;
+  if (!run->good || n < 3) return NAN;
+  gsl_fit_linear(run->time + first, 1, run->volume + first, 1, (size_t)n, &c0,
+                 &slope, &cov00, &cov01, &cov11, &sum);
+  return -slope;
+}
+
+static double rate_in(const struct discharge *run,
+                      const struct window *window) {
+  return rate_between(run, window->begin, window->end);
+}
+
+/* Largest departure from its mean of the rate over half a unit of time. */
+static double drift_in(const struct discharge *run,
+                       const struct window *window) {
+  const double mean = rate_in(run, window);
+  double most = 0;
+  for (double t = window->begin; t < window->end - 1e-9; t += 0.5) {
+    most = fmax(most, fabs(rate_between(run, t, t + 0.5) / mean - 1));
+  }
+  return isfinite(mean) ? most : NAN;
+}
+
+/* Beverloo's law through n rates: Q^(2/3) = C^(2/3) (D + b) by least squares,
+ * each with the weight that makes its relative error count. */
+struct law {
+  double constant, offset;
+  double misfit; /* largest, relative */
+};
+static struct law fit_law(int n, const double width[], const double rate[]) {
+  double y[WIDTHS], weight[WIDTHS], c0, c1, cov00, cov01, cov11, sum;
+  for (int k = 0; k < n; k++) {
+    y[k] = cbrt(rate[k] * rate[k]);
+    weight[k] = 1 / (y[k] * y[k]);
+  }
+  gsl_fit_wlinear(width, 1, weight, 1, y, 1, (size_t)n, &c0, &c1, &cov00,
+                  &cov01, &cov11, &sum);
+  struct law law = {.constant = pow(c1, 1.5), .offset = c0 / c1};
+  for (int k = 0; k < n; k++) {
+    const double seen = law.constant * pow(width[k] + law.offset, 1.5);
+    law.misfit = fmax(law.misfit, fabs(seen / rate[k] - 1));
+  }
+  return law;
+}
+
+/* All six widths on level 7 and the law through them, in a window of time. */
+static void report_law(struct report *report, const struct window *window,
+                       const struct discharge run[WIDTHS]) {
+  double width[WIDTHS], rate[WIDTHS], drift = 0;
+  for (int k = 0; k < WIDTHS; k++) {
+    width[k] = width_of(k);
+    rate[k] = rate_in(&run[k], window);
+    drift = fmax(drift, drift_in(&run[k], window));
+  }
+  const struct law law = fit_law(WIDTHS, width, rate);
+  report_value(report, window->name, "C", 7, law.constant);
+  report_at_most(report, window->name, "C from 1.435", 7,
+                 fabs(law.constant / kConstant - 1), 0.07);
+  report_at_most(report, window->name, "b in cells", 7,
+                 fabs(law.offset) * 128 / 5, 1.5);
+  report_at_most(report, window->name, "misfit of Q", 7, law.misfit, 0.02);
+  report_at_most(report, window->name, "drift of Q", 7, drift, 0.05);
+}
+
+static void run_width(int k, int level, struct discharge *out) {
+  char overrides[128];
+  snprintf(overrides, sizeof overrides, "W=%g level=%d", kHalfWidth[k], level);
+  run_silo(overrides, 2, kSteady.end, out);
+}
+
+/* Three widths on a level: their rates, and the law through them. */
+static struct law report_few(struct report *report, int level,
+                             const struct discharge run[FEW]) {
+  double width[FEW], rate[FEW];
+  for (int k = 0; k < FEW; k++) {
+    char grid[32];
+    width[k] = width_of(kFew[k]);
+    rate[k] = rate_in(&run[k], &kSteady);
+    snprintf(grid, sizeof grid, "D = %.3f", width[k]);
+    report_value(report, grid, "Q", level, rate[k]);
+  }
+  return fit_law(FEW, width, rate);
+}
+
+/* What flows through the outlet is what is lost, and it is grains alone. */
+static void report_outlet(struct report *report,
+                          const struct discharge run[WIDTHS]) {
+  double unaccounted = 0, least = 1, slowest = HUGE_VAL;
+  for (int k = 0; k < WIDTHS; k++) {
+    const double lost = run[k].volume[0] - run[k].volume[run[k].n - 1];
+    unaccounted = fmax(unaccounted, fabs(run[k].outflow / lost - 1));
+    least = fmin(least, run[k].least);
+    slowest = fmin(slowest, run[k].slowest);
+  }
+  report_at_most(report, "outlet", "loss but for outflow", 7, unaccounted,
+                 1e-11);
+  report_at_most(report, "outlet", "gas in it", 7, 1 - least, 1e-11);
+  report_at_least(report, "outlet", "least outward speed", 7, slowest, 0);
+}
+
+/* A rate that must not depend on something, for the third width. */
+static void report_same(struct report *report, const char *what, int level,
+                        double change, double bar) {
+  report_at_most(report, "D = 0.625", what, level, fabs(change), bar);
+}
+
+static double rate_with(const char *overrides, double parts) {
+  static struct discharge out;
+  run_silo(overrides, parts, kSteady.end, &out);
+  return rate_in(&out, &kSteady);
+}
+
+static void report_iterations(struct report *report,
+                              const struct discharge *const run[3]) {
+  static const char *const name[] = {"pressure iterations",
+                                     "viscous iterations"};
+  for (int j = 0; j < 2; j++) {
+    int count[3];
+    for (int l = 0; l < 3; l++) count[l] = run[l][FEW - 1].iterations[j];
+    report_counts(report, "D = 1.094", name[j], 6, 3, count, 0, 0);
+  }
+}
+
+static void run(struct report *report) {
+  static struct discharge all[WIDTHS], few[3][FEW];
+  struct law law[3];
+  for (int k = 0; k < WIDTHS; k++) run_width(k, 7, &all[k]);
+  for (int k = 0; k < FEW; k++) {
+    run_width(kFew[k], 6, &few[0][k]);
+    few[1][k] = all[kFew[k]];
+    run_width(kFew[k], 8, &few[2][k]);
+  }
+  report_law(report, &kSteady, all);
+  report_law(report, &kEarly, all);
+  for (int l = 0; l < 3; l++) law[l] = report_few(report, 6 + l, few[l]);
+  for (int l = 0; l < 3; l++) {
+    report_value(report, "three widths", "C", 6 + l, law[l].constant);
+  }
+  for (int l = 0; l < 2; l++) {
+    report_value(report, "three widths", "size of b", 6 + l,
+                 fabs(law[l].offset));
+  }
+  report_at_most(report, "three widths", "size of b", 8, fabs(law[2].offset),
+                 fabs(law[1].offset));
+  report_outlet(report, all);
+  const double rate[2] = {rate_in(&few[0][1], &kSteady),
+                          rate_in(&few[1][1], &kSteady)};
+  report_same(report, "change of Q: fill 3", 7,
+              rate_with("fill=3", 2) / rate[1] - 1, 0.03);
+  report_same(report, "change of Q: whole silo", 6,
+              rate_with("level=6 half=false", 1) / rate[0] - 1, 1e-3);
+  report_same(report, "change of Q: eta_max 1000", 6,
+              rate_with("level=6 eta_max=1000", 2) / rate[0] - 1, 0.01);
+  const struct discharge *const levels[] = {few[0], few[1], few[2]};
+  report_iterations(report, levels);
+}
+
+const struct convergence_case silo_case = {
+    "silo", "a silo empties at the rate of Beverloo's law", 2, false, run};
