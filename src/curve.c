@@ -7,27 +7,47 @@
 
 #include "talus/command_line.h"
 #include "talus/error.h"
+#include "talus/memory.h"
 #include "talus/rheology.h"
 
-/* Range of inertial numbers, so many to a decade. */
-enum { FIRST_DECADE = -4, LAST_DECADE = 1, PER_DECADE = 12 };
-enum { NPOINTS = (LAST_DECADE - FIRST_DECADE) * PER_DECADE + 1 };
+/* Decades of inertial numbers, and rows to each where limits are known and
+ * where not. */
+enum { FIRST_DECADE = -4, LAST_DECADE = 1, FINE = 100, COARSE = 12 };
+
+static const char *const STATES[] = {"solid", "quasi-static", "dense",
+                                     "inertial", "beyond"};
+
+static void list_key(const struct rheology_key *key) {
+  char range[64], initial[32] = "needed";
+  snprintf(range, sizeof range, "%g to %g", key->min, key->max);
+  if (!isnan(key->initial))
+    snprintf(initial, sizeof initial, "%g", key->initial);
+  printf("    %-12s %-7s %-16s %-8s %s\n", key->name, key->unit, range, initial,
+         key->help);
+}
 
 static int list_closures(void) {
   const struct rheology_model *model;
+  const struct rheology_key *key;
+  printf("%-16s %-7s %-16s %-8s %s\n", "closure, key", "unit", "range",
+         "default", "meaning");
   for (int i = 0; (model = rheology_get(i)) != NULL; i++) {
-    printf("%-12s %s [%s]\n", model->name, model->title, model->source);
-    for (int k = 0; k < model->nkeys; k++) {
-      const struct rheology_key *key = &model->keys[k];
-      printf("    %-10s %s, %s", key->name, key->help, key->unit);
-      if (!isnan(key->initial)) printf(", default %g", key->initial);
-      printf("\n");
-    }
+    printf("\n%s: %s\n    [%s]\n", model->name, model->title, model->source);
+    for (int k = 0; k < model->nkeys; k++) list_key(&model->keys[k]);
+    for (int k = 0; k < model->noutputs; k++)
+      printf("    gives %-6s %-7s %s\n", model->outputs[k].name,
+             model->outputs[k].unit, model->outputs[k].title);
   }
+  printf("\nall of them:\n");
+  model = rheology_get(0);
+  for (int k = model->nkeys; (key = rheology_key(model, k)) != NULL; k++)
+    list_key(key);
+  printf("    regularisation:");
+  for (int k = 0; rheology_regularisation_name(k) != NULL; k++)
+    printf("%s %s", k > 0 ? "," : "", rheology_regularisation_name(k));
   printf(
-      "\nAll take eta_min, eta_max, regularisation and gamma_r. For a curve "
-      "at pressure p:\n  talus rheology NAME [p=1] [key=value ...] "
-      "[--csv]\n");
+      "\n\nrho is the density of the phase unless given. For a curve at "
+      "pressure p:\n  talus rheology NAME [p=1] [key=value ...] [--csv]\n");
   return EXIT_DONE;
 }
 
@@ -77,33 +97,137 @@ static void set_key(struct rheology *rheology, const char *word,
   }
 }
 
-/* The key `name`, 1 if the closure has none. */
-static double value_or_one(const struct rheology *rheology, const char *name) {
+/* The key `name`, else `other`, 1 if the closure has neither. */
+static double value_or_one(const struct rheology *rheology, const char *name,
+                           const char *other) {
   const struct rheology_key *key;
   for (int i = 0; (key = rheology_key(rheology->model, i)) != NULL; i++)
-    if (strcmp(key->name, name) == 0) return rheology_value(rheology, i);
+    if (strcmp(key->name, name) == 0 || strcmp(key->name, other) == 0)
+      return rheology_value(rheology, i);
   return 1;
+}
+
+/* The rows of a curve, of length n. */
+struct curve {
+  int n;
+  double *I, *rate, *p, *eta, *nu, *state; /* owned; nu, state may be NULL */
+};
+
+/* Inertial numbers: even in the logarithm, and both limits where known. */
+static struct curve curve_new(const struct rheology *rheology) {
+  struct curve curve = {0};
+  double limit[2] = {INFINITY, pow(10, LAST_DECADE)};
+  const int per_decade = rheology->model->limits != NULL ? FINE : COARSE;
+  if (rheology->model->limits != NULL) rheology->model->limits(rheology, limit);
+  const int steps = (int)ceil((log10(limit[1]) - FIRST_DECADE) * per_decade);
+  const size_t room = (size_t)(steps > 0 ? steps : 0) + 2;
+  curve.I = MEM_NEW(double, room);
+  for (int i = 0; i < steps; i++) {
+    const double I = pow(10, FIRST_DECADE + (double)i / per_decade);
+    if (curve.n > 0 && curve.I[curve.n - 1] < limit[0] && limit[0] < I)
+      curve.I[curve.n++] = limit[0];
+    curve.I[curve.n++] = I;
+  }
+  curve.I[curve.n++] = limit[1];
+  curve.rate = MEM_NEW(double, curve.n);
+  curve.p = MEM_NEW(double, curve.n);
+  curve.eta = MEM_NEW(double, curve.n);
+  return curve;
+}
+
+static void curve_destroy(struct curve *curve) {
+  mem_free(curve->I), mem_free(curve->rate), mem_free(curve->p);
+  mem_free(curve->eta), mem_free(curve->nu), mem_free(curve->state);
+}
+
+static double *quantity(const struct rheology *rheology, const char *name,
+                        const struct curve *curve) {
+  for (int k = 0; k < rheology->model->noutputs; k++) {
+    if (strcmp(rheology->model->outputs[k].name, name) != 0) continue;
+    double *out = MEM_NEW(double, curve->n);
+    rheology_output(rheology, k, curve->n, curve->rate, curve->p, out);
+    return out;
+  }
+  return NULL;
+}
+
+static void print_csv(const struct curve *curve) {
+  printf("I,shear_rate,eta,mu,nu,state\n");
+  for (int i = 0; i < curve->n; i++) {
+    const double p = curve->p[i];
+    printf("%.10g,%.10g,%.10g,%.10g,", p > 0 ? curve->I[i] : NAN,
+           curve->rate[i], curve->eta[i],
+           p > 0 ? curve->eta[i] * curve->rate[i] / p : NAN);
+    if (curve->nu != NULL) printf("%.10g", curve->nu[i]);
+    printf(",");
+    if (curve->state != NULL) printf("%g", curve->state[i]);
+    printf("\n");
+  }
+}
+
+static void print_columns(const struct curve *curve) {
+  printf("%13s %13s %13s %13s", "I", "shear_rate", "eta", "mu");
+  if (curve->nu != NULL) printf(" %13s", "nu");
+  printf(curve->state != NULL ? "  state\n" : "\n");
+  for (int i = 0; i < curve->n; i++) {
+    const double p = curve->p[i];
+    printf("%13.6g %13.6g %13.6g %13.6g", p > 0 ? curve->I[i] : NAN,
+           curve->rate[i], curve->eta[i],
+           p > 0 ? curve->eta[i] * curve->rate[i] / p : NAN);
+    if (curve->nu != NULL) printf(" %13.6g", curve->nu[i]);
+    if (curve->state != NULL) printf("  %s", STATES[(int)curve->state[i]]);
+    printf("\n");
+  }
+}
+
+/* What the curve as a whole has to say. `scale` is the shear rate of I = 1. */
+static void print_summary(const struct rheology *rheology, double pressure,
+                          double scale) {
+  double I[2], rate, eta;
+  printf("p = %g, d = %g, rho = %g\n", pressure,
+         value_or_one(rheology, "d", "d"),
+         value_or_one(rheology, "rho", "rho_d"));
+  if (rheology->model->limits != NULL && pressure > 0) {
+    rheology->model->limits(rheology, I);
+    rate = I[0] * scale;
+    rheology_eval(rheology, 0, 1, &rate, &pressure, &eta);
+    printf("I_tran = %.6g, mu_tran = %.6g, I_max = %.6g\n", I[0],
+           eta * rate / pressure, I[1]);
+  }
+  if (!rheology->model->mu_of_i) return;
+  if (rheology_window(rheology, I))
+    printf("well posed for %.5g < I < %.5g, before bounds and cohesion\n", I[0],
+           I[1]);
+  else
+    printf("ill posed for all I, before bounds and cohesion\n");
 }
 
 static void print_curve(const struct rheology *rheology, double pressure,
                         bool csv) {
-  double d = value_or_one(rheology, "d"), rho = value_or_one(rheology, "rho");
-  double I[NPOINTS], rate[NPOINTS], p[NPOINTS], eta[NPOINTS];
-  for (int i = 0; i < NPOINTS; i++) {
-    I[i] = pow(10, FIRST_DECADE + (double)i / PER_DECADE);
-    /* Without pressure there is no inertial number: take it as a rate. */
-    rate[i] = pressure > 0 ? I[i] / d * sqrt(pressure / rho) : I[i];
-    p[i] = pressure;
+  const double d = value_or_one(rheology, "d", "d");
+  const double rho = value_or_one(rheology, "rho", "rho_d");
+  /* Without pressure there is no inertial number: take it as a rate. */
+  const double scale = pressure > 0 ? sqrt(pressure / rho) / d : 1;
+  struct curve curve = curve_new(rheology);
+  for (int i = 0; i < curve.n; i++) {
+    curve.rate[i] = curve.I[i] * scale;
+    curve.p[i] = pressure;
   }
-  rheology_eval(rheology, NPOINTS, rate, p, eta);
-  printf(csv ? "I,shear_rate,eta,mu,nu,state\n" : "%13s %13s %13s %13s\n", "I",
-         "shear_rate", "eta", "mu");
-  for (int i = 0; i < NPOINTS; i++) {
-    double mu = pressure > 0 ? eta[i] * rate[i] / pressure : NAN;
-    /* No closure knows its solid fraction or state yet. */
-    printf(csv ? "%.8g,%.8g,%.8g,%.8g,,\n" : "%13.6g %13.6g %13.6g %13.6g\n",
-           pressure > 0 ? I[i] : NAN, rate[i], eta[i], mu);
-  }
+  rheology_eval(rheology, 0, curve.n, curve.rate, curve.p, curve.eta);
+  curve.nu = quantity(rheology, "nu", &curve);
+  curve.state = quantity(rheology, "state", &curve);
+  if (!csv) print_summary(rheology, pressure, scale);
+  csv ? print_csv(&curve) : print_columns(&curve);
+  curve_destroy(&curve);
+}
+
+/* A grain of unit size and density where the closure has no other. */
+static void set_units(struct rheology *rheology) {
+  const struct rheology_key *key;
+  for (int i = 0; (key = rheology_key(rheology->model, i)) != NULL; i++)
+    if (isnan(key->initial) &&
+        (strcmp(key->name, "d") == 0 || strcmp(key->name, "rho") == 0))
+      rheology_set(rheology, key->name, 1);
 }
 
 int command_rheology(int argc, char *argv[]) {
@@ -118,8 +242,7 @@ int command_rheology(int argc, char *argv[]) {
   double pressure = 1;
   bool csv = false;
   rheology_init(&rheology, model);
-  rheology_set(&rheology, "rho", 1);
-  rheology_set(&rheology, "d", 1);
+  set_units(&rheology);
   for (int i = 1; i < argc; i++) {
     if (strcmp(argv[i], "--csv") == 0)
       csv = true;
@@ -130,6 +253,9 @@ int command_rheology(int argc, char *argv[]) {
   if (missing != NULL)
     USER_ERROR("%s needs %s=value (%s, %s)", model->name, missing->name,
                missing->help, missing->unit);
+  const char *wrong = rheology_prepare(&rheology);
+  if (wrong != NULL) USER_ERROR("%s: %s", model->name, wrong);
   print_curve(&rheology, pressure, csv);
+  rheology_release(&rheology);
   return EXIT_DONE;
 }

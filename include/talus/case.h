@@ -50,8 +50,8 @@ struct case_file *case_load_text(const char *path, const char *text,
 void case_destroy(struct case_file *file);
 
 /* What the case says, owned by the case and valid while it lives. Its functions
- * of position may be called on any rank; if one fails there the program ends,
- * as a USER_ERROR when there is one rank, as FATAL when there are more. */
+ * may be called on any rank; if one fails there the program ends, as a
+ * USER_ERROR when there is one rank, as FATAL when there are more. */
 const struct params *case_params(const struct case_file *file);
 
 /* Something about the case that is no error but worth a word, as one line; NULL

@@ -64,14 +64,15 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
 void properties_shear_rate(const struct mesh *mesh, double *const u[DIM],
                            double *shear_f);
 
-/* eta_f [nfaces_all], Pa s. gas NULL: grains only. c, p filled; normal,
- * plane: the planes of cut leaves; shear_f as above; work: two scratch arrays
- * [nfaces]. Collective. */
-void properties_viscosity(const struct mesh *mesh, const struct phase *grains,
-                          const struct phase *gas, const double gravity[DIM],
-                          const double *c, double *const normal[DIM],
-                          const double *plane, const double *p,
-                          const bool *closed, const double *shear_f,
-                          double *const work[2], double *eta_f);
+/* eta_f [nfaces_all], Pa s, at a time, s. gas NULL: grains only. c, p filled;
+ * normal, plane: the planes of cut leaves; shear_f as above; work: two scratch
+ * arrays [nfaces]. Collective. */
+void properties_viscosity(const struct mesh *mesh, double time,
+                          const struct phase *grains, const struct phase *gas,
+                          const double gravity[DIM], const double *c,
+                          double *const normal[DIM], const double *plane,
+                          const double *p, const bool *closed,
+                          const double *shear_f, double *const work[2],
+                          double *eta_f);
 
 #endif

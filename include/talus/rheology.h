@@ -11,7 +11,7 @@
  * (|du/dy| in plane shear), so that |tau| = sqrt(tau:tau/2) = eta gamma. Units
  * are SI below, but any consistent set will do. A closure gives a plastic
  * viscosity eta_f(gamma, p) and, if it has a yield stress, tau_y(gamma, p);
- * the layer they share forms
+ * the layer they share adds the key `cohesion` to tau_y and forms
  *
  *   eta = eta_f + tau_y/gamma                                            (2)
  *   eta = eta_f + tau_y (1 - exp(-gamma/gamma_r))/gamma                  (3)
@@ -28,15 +28,25 @@
  * At rest a yielded closure with p > 0 gives eta_max (2), or a finite value
  * proportional to 1/gamma_r (3, 4).
  *
- * Closures (sources in their files): newtonian, bingham, bagnold, coulomb,
- * mu_i. To add one: a file in src/rheology/ and a line in
- * src/rheology/models.h. Nothing else needs to know.
+ * Closures (sources in their files): newtonian, bingham, power_law,
+ * herschel_bulkley, cross, bagnold, coulomb, mu_i, mu_i_linear, mu_i_quadratic,
+ * mu_i_power, mu_i_well_posed, lee_huang, and user, a function of the case. To
+ * add one: a file in src/rheology/ and a line in src/rheology/models.h. Nothing
+ * else needs to know.
+ *
+ * A closure of mu(I), mu = tau/p a function of I = gamma d/sqrt(p/rho) alone,
+ * is well posed where
+ *
+ *   C(I) = 4 r^2 - 4 r + mu^2 (1 - r/2)^2 <= 0,  r = I mu'/mu           (5)
+ *
+ * [barker_2015]; elsewhere short waves grow without bound.
  *
  * Sources:
  *  [lagree_staron_popinet_2011] J. Fluid Mech. 686 (2011) 378,
  *    doi:10.1017/jfm.2011.335.
  *  [valette_2019] Comput. Fluids 191 (2019) 104260,
  *    doi:10.1016/j.compfluid.2019.104260.
+ *  [barker_2015] J. Fluid Mech. 779 (2015) 794, doi:10.1017/jfm.2015.412.
  *  [papanastasiou_1987] J. Rheol. 31 (1987) 385, doi:10.1122/1.549926.
  *  [bercovier_engelman_1980] J. Comput. Phys. 36 (1980) 313,
  *    doi:10.1016/0021-9991(80)90163-1.
@@ -44,6 +54,7 @@
 #ifndef TALUS_RHEOLOGY_H
 #define TALUS_RHEOLOGY_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { RHEOLOGY_MAX_KEYS = 16 };
@@ -57,14 +68,36 @@ struct rheology_key {
   const char *help; /* half a line */
 };
 
+struct rheology;
+
 /*
- * Fills out[i], i < n, from param (in the order of the model's keys), shear
- * rate (>= 0) and pressure (>= 0). No array overlaps another.
+ * Fills out[i], i < n, from shear rate (>= 0) and pressure (>= 0); r->param is
+ * in the order of the model's keys. No array overlaps another.
  */
-typedef void rheology_function(const double *param, int32_t n,
+typedef void rheology_function(const struct rheology *r, int32_t n,
                                const double *restrict shear_rate,
                                const double *restrict pressure,
                                double *restrict out);
+
+/* The same from a function of the user, who may look at the time, s. */
+typedef void rheology_user_function(void *context, double time, int32_t n,
+                                    const double *shear_rate,
+                                    const double *pressure, double *eta);
+
+/* Something a closure knows besides the viscosity. */
+struct rheology_quantity {
+  const char *name, *unit, *title;
+  rheology_function *eval;
+};
+
+/* What the quantity "state" of a closure means. */
+enum rheology_state {
+  RHEOLOGY_SOLID,        /* at rest: its yield stress is not reached */
+  RHEOLOGY_QUASI_STATIC, /* more than 99 % of p by enduring contact */
+  RHEOLOGY_DENSE,
+  RHEOLOGY_INERTIAL, /* less than 1 % */
+  RHEOLOGY_BEYOND    /* no steady shear at such an inertial number */
+};
 
 /* One closure. Everything in it is constant. */
 struct rheology_model {
@@ -73,8 +106,17 @@ struct rheology_model {
   const char *source;              /* key of the paper and equation */
   const struct rheology_key *keys; /* [nkeys] */
   int nkeys;
-  rheology_function *eval;  /* plastic viscosity eta_f, Pa s */
+  rheology_function *eval;  /* plastic viscosity eta_f, Pa s; NULL: r->user */
   rheology_function *yield; /* yield stress tau_y, Pa; NULL: none */
+  const struct rheology_quantity *outputs; /* [noutputs] */
+  int noutputs;
+  bool mu_of_i; /* tau/p depends on I alone; has keys d and rho */
+  /* Makes *table, one block of memory.h, from complete parameters. Returns what
+   * is wrong with them, NULL if nothing is. NULL: needs no table. */
+  const char *(*prepare)(const struct rheology *r, void **table);
+  /* I[0]: where a branch ends in a kink, I[1]: the largest of steady shear.
+   * NULL: neither. After prepare. */
+  void (*limits)(const struct rheology *r, double I[2]);
 };
 
 enum rheology_regularisation {
@@ -83,13 +125,18 @@ enum rheology_regularisation {
   RHEOLOGY_BERCOVIER_ENGELMAN
 };
 
-/* A closure with its parameters: what a phase of a case holds. */
+/* A closure with its parameters: what a phase of a case holds. Copies share
+ * the table; who called rheology_prepare frees it. */
 struct rheology {
   const struct rheology_model *model; /* borrowed, static */
   double param[RHEOLOGY_MAX_KEYS];    /* [model->nkeys] */
   enum rheology_regularisation regularisation;
-  double eta_min, eta_max; /* Pa s; eta_max wins if they cross */
-  double gamma_r;          /* 1/s, of (3) and (4) */
+  double eta_min, eta_max;      /* Pa s; eta_max wins if they cross */
+  double gamma_r;               /* 1/s, of (3) and (4) */
+  double cohesion;              /* Pa, added to tau_y */
+  void *table;                  /* by rheology_prepare; NULL: none */
+  rheology_user_function *user; /* of the closure `user` */
+  void *context;                /* borrowed */
 };
 
 /* The closure of this name, NULL if there is none. */
@@ -104,8 +151,8 @@ const char *rheology_nearest(const char *name);
 
 /*
  * Key i of a model: its own, then those all models share (eta_min, eta_max,
- * gamma_r); NULL past the last. This is the list to loop over for help and logs
- * and to find a key's range; rheology_value gives its value in r.
+ * gamma_r, cohesion); NULL past the last. This is the list to loop over for
+ * help and logs and to find a key's range; rheology_value gives its value in r.
  */
 const struct rheology_key *rheology_key(const struct rheology_model *model,
                                         int i);
@@ -129,12 +176,32 @@ int rheology_set_regularisation(struct rheology *r, const char *name);
 const char *rheology_regularisation_name(int i);
 
 /*
- * Viscosity eta[i], Pa s, from shear_rate[i] >= 0, 1/s, equation (1), and
- * pressure[i], Pa. All [n]; eta overlaps neither of the others. Works on blocks
- * that fit the cache and allocates nothing.
+ * Make what r->model needs before rheology_eval, once all keys have a value:
+ * owned by the caller and freed by rheology_release, which leaves copies of r
+ * without it. Needed for all closures, cheap for most. Returns NULL, or what is
+ * wrong with the keys taken together; then there is nothing to release.
  */
-void rheology_eval(const struct rheology *r, int32_t n,
+const char *rheology_prepare(struct rheology *r);
+void rheology_release(struct rheology *r);
+
+/*
+ * Viscosity eta[i], Pa s, from shear_rate[i] >= 0, 1/s, equation (1), and
+ * pressure[i], Pa, at a time, s, that only a function of the user looks at. All
+ * [n]; eta overlaps neither of the others. Works on blocks that fit the cache
+ * and allocates nothing.
+ */
+void rheology_eval(const struct rheology *r, double time, int32_t n,
                    const double *shear_rate, const double *pressure,
                    double *eta);
+
+/* Quantity k < r->model->noutputs of the same; all [n]. */
+void rheology_output(const struct rheology *r, int k, int32_t n,
+                     const double *shear_rate, const double *pressure,
+                     double *out);
+
+/* The first window of inertial numbers between 1e-8 and 1e8 in which (5) holds;
+ * 0 or INFINITY where it reaches an end. False if there is none or the closure
+ * is not one of mu(I). Bounds, regularisation and cohesion are left out. */
+bool rheology_window(const struct rheology *r, double window[2]);
 
 #endif

@@ -81,6 +81,8 @@ struct case_file *case_load_text(const char *path, const char *text,
 
 void case_destroy(struct case_file *file) {
   if (file == NULL) return;
+  rheology_release(&file->params.grains.rheology);
+  rheology_release(&file->params.gas.rheology);
   rows_destroy(file);
   sandbox_destroy(file->sandbox);
   mem_free(file->text);

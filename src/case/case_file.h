@@ -43,6 +43,7 @@ struct case_function {
   struct case_file *file; /* borrowed */
   char path[PATH_LENGTH]; /* the key that holds it */
   int reference;          /* in Lua's registry */
+  bool is_viscosity;      /* of shear rate, pressure, time; else of x */
   int nresults, result;   /* it returns so many numbers, this one is meant */
   char name[PARAMS_NAME_LENGTH]; /* what it returned last, if a name */
 };
@@ -130,6 +131,9 @@ struct case_function *function_keep(struct case_file *file, const char *path,
 /* One of its results as the struct that `params` holds. */
 struct function function_result(struct case_file *file,
                                 struct case_function *function, int result);
+/* The function kept as a viscosity: the context of rheology->user. */
+void function_set_viscosity(struct case_function *function,
+                            struct rheology *rheology);
 /* The name it returns at x, valid until the next call. */
 const char *function_name(struct case_function *function, const double x[3]);
 /* Ends the program, by FATAL when only this rank may know. */

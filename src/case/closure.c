@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closures: {"mu_i", mu_s = 0.32, ...}, checked against the keys of the model.
- */
+/* Closures: {"mu_i", mu_s = 0.32, ...}, checked against the keys of the model;
+ * {"user", viscosity = function(shear_rate, pressure, time) ... end}. */
 #include <math.h>
 #include <string.h>
 
@@ -34,15 +34,17 @@ static const struct rheology_model *read_model(struct case_file *file,
   return model;
 }
 
-/* The keys of a model and `regularisation` are all its table may hold. */
+/* The keys of a model, `regularisation` and, if it is the user's, `viscosity`
+ * are all its table may hold. */
 static void check_names(struct case_file *file, const struct key *key,
                         const struct rheology_model *model) {
   const char *names[CASE_MAX_NAMES];
   const struct rheology_key *known;
   int n = 0;
-  while (n < CASE_MAX_NAMES - 1 && (known = rheology_key(model, n)) != NULL)
+  while (n < CASE_MAX_NAMES - 2 && (known = rheology_key(model, n)) != NULL)
     names[n++] = known->name;
   names[n++] = "regularisation";
+  if (model->eval == NULL) names[n++] = "viscosity";
   if (lua_istable(file->L, -1)) read_known_only(file, key->path, n, names, 1);
 }
 
@@ -73,10 +75,43 @@ static void read_regularisation(struct case_file *file, const char *closure,
     read_fail(file, path, "no such regularisation%s", known);
   }
   lua_pop(L, 1);
-  if (!given && rheology->model->yield == NULL) return;
+  push_option(L, "cohesion");
+  bool yields = rheology->model->yield != NULL || !lua_isnil(L, -1);
+  lua_pop(L, 1);
+  if (!given && !yields) return;
   rows_add(file, path, rheology_regularisation_name(rheology->regularisation),
            "", "how a yield stress becomes a viscosity at small shear rates",
            given ? "case" : "default");
+}
+
+/* The function of the closure `user`. */
+static void read_viscosity(struct case_file *file, const char *closure,
+                           struct rheology *rheology) {
+  lua_State *L = file->L;
+  char path[PATH_LENGTH];
+  path_join(path, closure, "viscosity");
+  push_option(L, "viscosity");
+  if (lua_isnil(L, -1))
+    read_fail_at(file, closure,
+                 "%s is missing: a function(shear_rate, pressure, time)", path);
+  if (!lua_isfunction(L, -1))
+    read_fail(file, path,
+              "a function(shear_rate, pressure, time) is needed (Pa s)");
+  function_set_viscosity(
+      function_keep(file, path, "Pa s", "viscosity, a function of the case", 1),
+      rheology);
+}
+
+/* Call it where most of what can go wrong does so: at rest, without pressure,
+ * and at extremes of both. */
+static void try_viscosity(const struct rheology *rheology) {
+  static const double TRIED[] = {0, 1e-300, 1e-9, 1e-3, 1, 1e3, 1e9};
+  enum { N = sizeof TRIED / sizeof *TRIED };
+  double p[N], eta[N];
+  for (int k = 0; k < N; k++) {
+    for (int i = 0; i < N; i++) p[i] = TRIED[k];
+    rheology_eval(rheology, 0, N, TRIED, p, eta);
+  }
 }
 
 static void read_key(struct case_file *file, const char *closure,
@@ -105,6 +140,7 @@ static void read_key(struct case_file *file, const char *closure,
                  known->help);
   }
   rheology_set(&phase->rheology, known->name, value);
+  if (!given && strcmp(known->name, "cohesion") == 0) return;
   /* Nothing depends on the shear rate of a regularisation that is not used. */
   if (!given && strcmp(known->name, "gamma_r") == 0 &&
       phase->rheology.regularisation == RHEOLOGY_CLIP)
@@ -120,12 +156,16 @@ void closure_read(struct case_file *file, const struct key *key) {
   rheology_init(&phase->rheology, model);
   check_names(file, key, model);
   rows_add(file, key->path, model->name, "", model->title, "case");
+  if (model->eval == NULL) read_viscosity(file, key->path, &phase->rheology);
   read_regularisation(file, key->path, &phase->rheology);
   for (int i = 0; rheology_key(model, i) != NULL; i++)
     read_key(file, key->path, phase, i);
   if (phase->rheology.eta_min > phase->rheology.eta_max)
     read_fail_at(file, key->path, "%s: eta_min = %g is above eta_max = %g",
                  key->path, phase->rheology.eta_min, phase->rheology.eta_max);
+  const char *wrong = rheology_prepare(&phase->rheology);
+  if (wrong != NULL) read_fail_at(file, key->path, "%s: %s", key->path, wrong);
+  if (model->eval == NULL) try_viscosity(&phase->rheology);
   lua_pop(L, 1);
 }
 
@@ -137,7 +177,7 @@ bool closure_depends_on_pressure(const struct rheology *rheology) {
   open.eta_max = 1e30;
   double rate[N], eta[N];
   for (int i = 0; i < N; i++) rate[i] = 1;
-  rheology_eval(&open, N, rate, PRESSURES, eta);
+  rheology_eval(&open, 0, N, rate, PRESSURES, eta);
   for (int i = 1; i < N; i++)
     if (eta[i] != eta[0]) return true;
   return false;

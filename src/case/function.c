@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions of position that a case defines and the solver calls. */
+/* Functions of position, and of the shear, that a case defines and the solver
+ * calls. */
 #include <lauxlib.h>
 #include <math.h>
 #include <stdarg.h>
@@ -27,10 +28,14 @@ struct case_function *function_keep(struct case_file *file, const char *path,
   return function;
 }
 
+static int narguments(const struct case_function *function) {
+  return function->is_viscosity ? 3 : function->file->params.dimension;
+}
+
 static void call_text(const struct case_function *function, const double x[3],
                       size_t size, char *text) {
   size_t used = (size_t)snprintf(text, size, "%s(", function->path);
-  for (int d = 0; d < function->file->params.dimension && used < size; d++)
+  for (int d = 0; d < narguments(function) && used < size; d++)
     used += (size_t)snprintf(text + used, size - used, "%s%.6g",
                              d > 0 ? ", " : "", x[d]);
   if (used < size) snprintf(text + used, size - used, ")");
@@ -55,11 +60,10 @@ void function_fail(struct case_function *function, const double x[3],
 static void call(struct case_function *function, const double x[3]) {
   struct case_file *file = function->file;
   lua_State *L = file->L;
-  int dimension = file->params.dimension;
+  int n = narguments(function);
   lua_rawgeti(L, LUA_REGISTRYINDEX, function->reference);
-  for (int d = 0; d < dimension; d++) lua_pushnumber(L, x[d]);
-  const char *error =
-      sandbox_call(file->sandbox, dimension, function->nresults);
+  for (int d = 0; d < n; d++) lua_pushnumber(L, x[d]);
+  const char *error = sandbox_call(file->sandbox, n, function->nresults);
   if (error != NULL) function_fail(function, x, "fails: %s", error);
 }
 
@@ -87,6 +91,33 @@ struct function function_result(struct case_file *file,
   }
   one->result = result;
   return (struct function){.eval = eval, .context = one};
+}
+
+/* Infinity is allowed, as at rest: eta_max cuts it. */
+static void eval_viscosity(void *context, double time, int32_t n,
+                           const double *shear_rate, const double *pressure,
+                           double *eta) {
+  struct case_function *function = (struct case_function *)context;
+  lua_State *L = function->file->L;
+  for (int32_t i = 0; i < n; i++) {
+    const double at[3] = {shear_rate[i], pressure[i], time};
+    call(function, at);
+    if (lua_type(L, -1) != LUA_TNUMBER)
+      function_fail(function, at, "returned %s, a viscosity >= 0 is needed",
+                    luaL_typename(L, -1));
+    eta[i] = lua_tonumber(L, -1);
+    if (!(eta[i] >= 0))
+      function_fail(function, at, "returned %g, a viscosity >= 0 is needed",
+                    eta[i]);
+    lua_pop(L, 1);
+  }
+}
+
+void function_set_viscosity(struct case_function *function,
+                            struct rheology *rheology) {
+  function->is_viscosity = true;
+  rheology->user = eval_viscosity;
+  rheology->context = function;
 }
 
 const char *function_name(struct case_function *function, const double x[3]) {
@@ -138,7 +169,8 @@ void function_try_all(struct case_file *file) {
     try_point(&file->params, i, x);
     if (file->params.boundary_select != NULL) try_sides(file, x, i);
     for (int k = 0; k < file->nfunctions; k++)
-      if (!chooses_boundary(file, &file->functions[k]))
+      if (!chooses_boundary(file, &file->functions[k]) &&
+          !file->functions[k].is_viscosity)
         eval(&file->functions[k], x);
   }
 }

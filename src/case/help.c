@@ -124,6 +124,13 @@ static void print_closures(FILE *f) {
     for (int k = 0; k < model->nkeys; k++)
       print_closure_key(f, &model->keys[k]);
   }
+  fprintf(
+      f,
+      "  user takes a function of the case, called for every face and "
+      "step:\n"
+      "    rheology = { \"user\", eta_max = 10, viscosity =\n"
+      "      function(shear_rate, pressure, time)\n"
+      "        return 0.3 * pressure / math.max(shear_rate, 1e-6) end },\n");
   fprintf(f, "  All of them take\n");
   model = rheology_get(0);
   for (int k = model->nkeys; (key = rheology_key(model, k)) != NULL; k++)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/properties.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "talus/params.h"
@@ -242,13 +243,14 @@ struct mixed {
   double shear[2][BLOCK], eta[2][BLOCK]; /* of grains and gas */
 };
 
-/* Two phases in series share the stress, not the shear rate: that of the line
- * is gamma = theta gamma_1 + (1 - theta) gamma_2, eta_1 gamma_1 = eta_2
- * gamma_2,   eta = 1 / (theta/eta_1 + (1-theta)/eta_2). Stresses grow with
- * their rates, so gamma_1 is found by halving its range. Grains that took the
- * rate of the whole line, most of which is the gas's, would give way too easily
- * under a dense gas. */
-static void share_stress(const struct rheology *const phase[2],
+/* Two phases in series share the stress, not the shear rate:
+ *   gamma = theta gamma_1 + (1 - theta) gamma_2,
+ *   eta_1 gamma_1 = eta_2 gamma_2,
+ *   eta = 1 / (theta/eta_1 + (1 - theta)/eta_2).
+ * Stresses grow with their rates, so gamma_1 is found by halving its range.
+ * Grains that took the rate of the whole line, most of which is the gas's,
+ * would give way too easily under a dense gas. */
+static void share_stress(double time, const struct rheology *const phase[2],
                          const double *shear_f, struct mixed *m,
                          double *eta_f) {
   enum { HALVINGS = 24 };
@@ -263,7 +265,7 @@ static void share_stress(const struct rheology *const phase[2],
       m->shear[1][i] = (shear_f[m->face[i]] - theta * gamma) / (1 - theta);
     }
     for (int k = 0; k < 2; k++) {
-      rheology_eval(phase[k], m->n, m->shear[k], m->p, m->eta[k]);
+      rheology_eval(phase[k], time, m->n, m->shear[k], m->p, m->eta[k]);
     }
     for (int32_t i = 0; i < m->n; i++) {
       const double excess =
@@ -273,13 +275,15 @@ static void share_stress(const struct rheology *const phase[2],
   }
   for (int32_t i = 0; i < m->n; i++) {
     const double theta = m->theta[i];
-    eta_f[m->face[i]] = 1 / (theta / m->eta[0][i] + (1 - theta) / m->eta[1][i]);
+    const double eta[2] = {fmax(m->eta[0][i], DBL_MIN),
+                           fmax(m->eta[1][i], DBL_MIN)};
+    eta_f[m->face[i]] = 1 / (theta / eta[0] + (1 - theta) / eta[1]);
   }
   m->n = 0;
 }
 
 /* eta_f of the grains (in) mixed with that of the gas. */
-static void mix_viscosity(const struct mesh *mesh,
+static void mix_viscosity(const struct mesh *mesh, double time,
                           const struct rheology *const phase[2],
                           const double *theta_f, const double *shear_f,
                           const double *p_f, double *eta_f) {
@@ -288,35 +292,36 @@ static void mix_viscosity(const struct mesh *mesh,
   for (int32_t begin = 0; begin < mesh->nfaces; begin += BLOCK) {
     const int32_t n =
         begin + BLOCK < mesh->nfaces ? BLOCK : mesh->nfaces - begin;
-    rheology_eval(phase[1], n, shear_f + begin, p_f + begin, eta_gas);
+    rheology_eval(phase[1], time, n, shear_f + begin, p_f + begin, eta_gas);
     for (int32_t k = 0; k < n; k++) {
       const int32_t f = begin + k;
       if (theta_f[f] < PROPERTIES_GAS) {
         eta_f[f] = eta_gas[k];
       } else if (theta_f[f] < 1 - PROPERTIES_GAS) {
         m.face[m.n] = f, m.theta[m.n] = theta_f[f], m.p[m.n] = p_f[f];
-        if (++m.n == BLOCK) share_stress(phase, shear_f, &m, eta_f);
+        if (++m.n == BLOCK) share_stress(time, phase, shear_f, &m, eta_f);
       }
     }
   }
-  share_stress(phase, shear_f, &m, eta_f);
+  share_stress(time, phase, shear_f, &m, eta_f);
 }
 
-void properties_viscosity(const struct mesh *mesh, const struct phase *grains,
-                          const struct phase *gas, const double gravity[DIM],
-                          const double *c, double *const normal[DIM],
-                          const double *plane, const double *p,
-                          const bool *closed, const double *shear_f,
-                          double *const work[2], double *eta_f) {
+void properties_viscosity(const struct mesh *mesh, double time,
+                          const struct phase *grains, const struct phase *gas,
+                          const double gravity[DIM], const double *c,
+                          double *const normal[DIM], const double *plane,
+                          const double *p, const bool *closed,
+                          const double *shear_f, double *const work[2],
+                          double *eta_f) {
   double *theta_f = work[0], *p_f = work[1];
   const double density[2] = {grains->density,
                              gas ? gas->density : grains->density};
   face_pressure(mesh, density, gravity, c, normal, plane, p, closed, theta_f,
                 p_f);
-  rheology_eval(&grains->rheology, mesh->nfaces, shear_f, p_f, eta_f);
+  rheology_eval(&grains->rheology, time, mesh->nfaces, shear_f, p_f, eta_f);
   if (gas) {
     const struct rheology *const phase[2] = {&grains->rheology, &gas->rheology};
-    mix_viscosity(mesh, phase, theta_f, shear_f, p_f, eta_f);
+    mix_viscosity(mesh, time, phase, theta_f, shear_f, p_f, eta_f);
   }
   mesh_fill_faces(mesh, 1, &eta_f);
 }

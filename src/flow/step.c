@@ -272,10 +272,11 @@ static void update_viscosity(struct simulation *sim,
   field_fill(mesh, sim->p);
   properties_shear_rate(mesh, u, sim->face[0]->v);
   double *work[2] = {sim->face[1]->v, sim->face[2]->v};
-  properties_viscosity(
-      mesh, &params->grains, params->single_phase ? NULL : &params->gas,
-      params->gravity, sim->c->v, normal, sim->plane->v, sim->p->v, sim->closed,
-      sim->face[0]->v, work, sim->eta_f->v);
+  properties_viscosity(mesh, sim->time, &params->grains,
+                       params->single_phase ? NULL : &params->gas,
+                       params->gravity, sim->c->v, normal, sim->plane->v,
+                       sim->p->v, sim->closed, sim->face[0]->v, work,
+                       sim->eta_f->v);
 }
 
 /* Make u_f solenoidal by a pressure of its own: to the tolerance by a

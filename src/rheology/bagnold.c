@@ -15,11 +15,11 @@ static const struct rheology_key KEYS[] = {
     {"rho", "kg/m^3", 1e-12, 1e12, NAN, "bulk density"},
 };
 
-static void eval(const double *param, int32_t n,
+static void eval(const struct rheology *r, int32_t n,
                  const double *restrict shear_rate,
                  const double *restrict pressure, double *restrict eta) {
   (void)pressure;
-  const double rho_d2 = param[RHO] * param[D] * param[D];
+  const double rho_d2 = r->param[RHO] * r->param[D] * r->param[D];
   for (int32_t i = 0; i < n; i++) eta[i] = rho_d2 * shear_rate[i];
 }
 

@@ -12,18 +12,18 @@ static const struct rheology_key KEYS[] = {
     {"eta_0", "Pa s", 0., 1e30, NAN, "plastic viscosity"},
 };
 
-static void eval(const double *param, int32_t n,
+static void eval(const struct rheology *r, int32_t n,
                  const double *restrict shear_rate,
                  const double *restrict pressure, double *restrict eta) {
   (void)shear_rate, (void)pressure;
-  for (int32_t i = 0; i < n; i++) eta[i] = param[ETA_0];
+  for (int32_t i = 0; i < n; i++) eta[i] = r->param[ETA_0];
 }
 
-static void yield(const double *param, int32_t n,
+static void yield(const struct rheology *r, int32_t n,
                   const double *restrict shear_rate,
                   const double *restrict pressure, double *restrict tau_y) {
   (void)shear_rate, (void)pressure;
-  for (int32_t i = 0; i < n; i++) tau_y[i] = param[TAU_Y];
+  for (int32_t i = 0; i < n; i++) tau_y[i] = r->param[TAU_Y];
 }
 
 const struct rheology_model rheology_bingham = {

@@ -11,18 +11,19 @@ static const struct rheology_key KEYS[] = {
     {"mu_s", "1", 0., 100., NAN, "friction coefficient"},
 };
 
-static void eval(const double *param, int32_t n,
+static void eval(const struct rheology *r, int32_t n,
                  const double *restrict shear_rate,
                  const double *restrict pressure, double *restrict eta) {
-  (void)param, (void)shear_rate, (void)pressure;
+  (void)r, (void)shear_rate, (void)pressure;
   for (int32_t i = 0; i < n; i++) eta[i] = 0.;
 }
 
-static void yield(const double *param, int32_t n,
-                  const double *restrict shear_rate,
-                  const double *restrict pressure, double *restrict tau_y) {
+void rheology_friction(const struct rheology *r, int32_t n,
+                       const double *restrict shear_rate,
+                       const double *restrict pressure,
+                       double *restrict tau_y) {
   (void)shear_rate;
-  const double mu_s = param[MU_S];
+  const double mu_s = r->param[MU_S];
   for (int32_t i = 0; i < n; i++) tau_y[i] = mu_s * pressure[i];
 }
 
@@ -33,5 +34,5 @@ const struct rheology_model rheology_coulomb = {
     .keys = KEYS,
     .nkeys = NKEYS(KEYS),
     .eval = eval,
-    .yield = yield,
+    .yield = rheology_friction,
 };

@@ -31,25 +31,17 @@ static const struct rheology_key KEYS[] = {
     {"rho", "kg/m^3", 1e-12, 1e12, NAN, "density in the inertial number"},
 };
 
-static void eval(const double *param, int32_t n,
+static void eval(const struct rheology *r, int32_t n,
                  const double *restrict shear_rate,
                  const double *restrict pressure, double *restrict eta) {
-  const double delta_mu = param[DELTA_MU];
-  const double factor = param[I_0] / (param[D] * sqrt(param[RHO]));
+  const double delta_mu = r->param[DELTA_MU];
+  const double factor = r->param[I_0] / (r->param[D] * sqrt(r->param[RHO]));
   for (int32_t i = 0; i < n; i++) {
     double p = pressure[i];
     double denominator = factor * sqrt(p) + shear_rate[i];
     /* 0 only for p = 0: the floor turns 0/0 into 0 */
     eta[i] = delta_mu * p / (denominator < DBL_MIN ? DBL_MIN : denominator);
   }
-}
-
-static void yield(const double *param, int32_t n,
-                  const double *restrict shear_rate,
-                  const double *restrict pressure, double *restrict tau_y) {
-  (void)shear_rate;
-  const double mu_s = param[MU_S];
-  for (int32_t i = 0; i < n; i++) tau_y[i] = mu_s * pressure[i];
 }
 
 const struct rheology_model rheology_mu_i = {
@@ -59,5 +51,6 @@ const struct rheology_model rheology_mu_i = {
     .keys = KEYS,
     .nkeys = NKEYS(KEYS),
     .eval = eval,
-    .yield = yield,
+    .yield = rheology_friction,
+    .mu_of_i = true,
 };

@@ -10,11 +10,11 @@ static const struct rheology_key KEYS[] = {
     {"eta", "Pa s", 0., 1e30, NAN, "viscosity"},
 };
 
-static void eval(const double *param, int32_t n,
+static void eval(const struct rheology *r, int32_t n,
                  const double *restrict shear_rate,
                  const double *restrict pressure, double *restrict eta) {
   (void)shear_rate, (void)pressure;
-  for (int32_t i = 0; i < n; i++) eta[i] = param[ETA];
+  for (int32_t i = 0; i < n; i++) eta[i] = r->param[ETA];
 }
 
 const struct rheology_model rheology_newtonian = {

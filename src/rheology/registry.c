@@ -18,6 +18,7 @@ static const struct rheology_key SHARED[] = {
     {"eta_max", "Pa s", 1e-30, 1e30, 1e30, "largest viscosity"},
     {"gamma_r", "1/s", 1e-12, 1e12, 1e-3,
      "shear rate of papanastasiou and bercovier_engelman"},
+    {"cohesion", "Pa", 0., 1e15, 0., "added to the yield stress"},
 };
 
 static const char *const REGULARISATIONS[] = {
@@ -76,7 +77,8 @@ const struct rheology_key *rheology_key(const struct rheology_model *model,
 
 /* Where r keeps the value of key i, rheology_key(r->model, i) not being NULL */
 static double *value_of(struct rheology *r, int i) {
-  double *shared_value[NKEYS(SHARED)] = {&r->eta_min, &r->eta_max, &r->gamma_r};
+  double *shared_value[NKEYS(SHARED)] = {&r->eta_min, &r->eta_max, &r->gamma_r,
+                                         &r->cohesion};
   int nkeys = r->model->nkeys;
   return i < nkeys ? &r->param[i] : shared_value[i - nkeys];
 }

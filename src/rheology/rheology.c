@@ -5,17 +5,9 @@
 #include <float.h>
 #include <math.h>
 
-/* Cells handled at a time: four arrays of this length stay in the L1 cache. */
-enum { BLOCK = 512 };
-
-/* Selects, written so that NaN in `a` stays NaN. */
-static inline double at_least(double a, double low) {
-  return a < low ? low : a;
-}
-
-static inline double at_most(double a, double high) {
-  return a > high ? high : a;
-}
+#include "models.h"
+#include "talus/error.h"
+#include "talus/memory.h"
 
 /*
  * eta += tau_y/gamma, equation (2). tau_y/gamma exceeds eta_max below
@@ -82,20 +74,67 @@ static void clip_eta(const struct rheology *r, int32_t n, double *eta) {
     eta[i] = at_most(at_least(eta[i], eta_min), eta_max);
 }
 
-void rheology_eval(const struct rheology *r, int32_t n,
+/* Yield stress of the closure and cohesion. */
+static void yield_stress(const struct rheology *r, int32_t n,
+                         const double *shear_rate, const double *pressure,
+                         double *tau_y) {
+  const double cohesion = r->cohesion;
+  for (int32_t i = 0; i < n && r->model->yield == NULL; i++) tau_y[i] = 0;
+  if (r->model->yield != NULL)
+    r->model->yield(r, n, shear_rate, pressure, tau_y);
+  for (int32_t i = 0; i < n && cohesion > 0; i++) tau_y[i] += cohesion;
+}
+
+const char *rheology_prepare(struct rheology *r) {
+  r->table = NULL;
+  if (r->model->eval == NULL && r->user == NULL)
+    return "viscosity = function(shear_rate, pressure, time) is missing; only "
+           "a case file can hold it";
+  return r->model->prepare != NULL ? r->model->prepare(r, &r->table) : NULL;
+}
+
+void rheology_release(struct rheology *r) {
+  mem_free(r->table);
+  r->table = NULL;
+}
+
+static void check_prepared(const struct rheology *r) {
+  CHECK(r->model->prepare == NULL || r->table != NULL,
+        "call rheology_prepare for %s first", r->model->name);
+}
+
+void rheology_eval(const struct rheology *r, double time, int32_t n,
                    const double *shear_rate, const double *pressure,
                    double *eta) {
   const struct rheology_model *model = r->model;
-  double p[BLOCK], tau_y[BLOCK];
-  for (int32_t begin = 0; begin < n; begin += BLOCK) {
-    int32_t m = n - begin < BLOCK ? n - begin : BLOCK;
+  double p[RHEOLOGY_BLOCK], tau_y[RHEOLOGY_BLOCK];
+  check_prepared(r);
+  for (int32_t begin = 0; begin < n; begin += RHEOLOGY_BLOCK) {
+    int32_t m = n - begin < RHEOLOGY_BLOCK ? n - begin : RHEOLOGY_BLOCK;
     const double *gamma = shear_rate + begin;
     clip_pressure(m, pressure + begin, p);
-    model->eval(r->param, m, gamma, p, eta + begin);
-    if (model->yield) {
-      model->yield(r->param, m, gamma, p, tau_y);
+    if (model->eval != NULL)
+      model->eval(r, m, gamma, p, eta + begin);
+    else
+      r->user(r->context, time, m, gamma, p, eta + begin);
+    if (model->yield != NULL || r->cohesion > 0) {
+      yield_stress(r, m, gamma, p, tau_y);
       add_yield(r, m, gamma, tau_y, eta + begin);
     }
     clip_eta(r, m, eta + begin);
+  }
+}
+
+void rheology_output(const struct rheology *r, int k, int32_t n,
+                     const double *shear_rate, const double *pressure,
+                     double *out) {
+  double p[RHEOLOGY_BLOCK];
+  check_prepared(r);
+  CHECK(k >= 0 && k < r->model->noutputs, "%s has no quantity %d",
+        r->model->name, k);
+  for (int32_t begin = 0; begin < n; begin += RHEOLOGY_BLOCK) {
+    int32_t m = n - begin < RHEOLOGY_BLOCK ? n - begin : RHEOLOGY_BLOCK;
+    clip_pressure(m, pressure + begin, p);
+    r->model->outputs[k].eval(r, m, shear_rate + begin, p, out + begin);
   }
 }

@@ -92,6 +92,29 @@ bad_edit closure_key 'closure_key.lua:4: .*rheology.mus = 1.*mu_s' 'd = 0.05' \
   'd = 0.05, mus = 1'
 bad_edit closure_missing 'closure_missing.lua:4: grains.rheology.d is missing' \
   'd = 0.05, ' ''
+bad_edit closure_together \
+  'closure_together.lua:4: grains.rheology: nu_min < nu_0 < nu_max' \
+  '"mu_i", d = 0.05' '"lee_huang", nu_0 = 0.64'
+bad_edit viscosity_missing \
+  'viscosity_missing.lua:4: grains.rheology.viscosity is missing' \
+  '"mu_i", d = 0.05' '"user"'
+bad_edit viscosity_number \
+  'viscosity_number.lua:4: grains.rheology.viscosity = 3: a function' \
+  '"mu_i", d = 0.05' '"user", viscosity = 3'
+bad_edit viscosity_key \
+  'viscosity_key.lua:4: unknown key grains.rheology.viscosity' \
+  'd = 0.05' 'd = 0.05, viscosity = 3'
+bad_edit viscosity_nil \
+  'viscosity_nil.lua:4: .*rheology.viscosity\(0, 0, 0\) returned nil' \
+  '"mu_i", d = 0.05' '"user", viscosity = function() end'
+bad_edit viscosity_nan 'viscosity_nan.lua:4: .*\(0, 0, 0\) returned -?nan' \
+  '"mu_i", d = 0.05' '"user", viscosity = function(g, p) return p / g end'
+bad_edit viscosity_negative \
+  'viscosity_negative.lua:4: .*viscosity\(1, 1000, 0\) returned -999' \
+  '"mu_i", d = 0.05' \
+  '"user", viscosity = function(g, p) return g == 1 and p > 9 and g - p or 1 end'
+bad_edit viscosity_fails 'viscosity_fails.lua:4: .*fails: .*attempt to index' \
+  '"mu_i", d = 0.05' '"user", viscosity = function(g) return g.x end'
 bad_edit boundary 'boundary.lua:7: boundary.left = "symetry": .*symmetry' \
   'left = "symmetry"' 'left = "symetry"'
 bad_edit periodic 'periodic.lua:7: .*right must be "periodic" too' \

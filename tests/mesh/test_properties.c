@@ -167,9 +167,9 @@ static void mixture_eval(const struct bench *b, struct mixture *m, bool gas,
   const struct mesh *mesh = b->mesh;
   field_fill(mesh, m->c);
   vof_reconstruct(mesh, m->c->v, m->normal, m->plane->v);
-  properties_viscosity(mesh, &m->grains, gas ? &m->gas : NULL, gravity, m->c->v,
-                       m->normal, m->plane->v, m->p->v, b->closed, m->shear,
-                       m->work, m->eta);
+  properties_viscosity(mesh, 0, &m->grains, gas ? &m->gas : NULL, gravity,
+                       m->c->v, m->normal, m->plane->v, m->p->v, b->closed,
+                       m->shear, m->work, m->eta);
 }
 
 /* With eta = mu p / gamma the viscosity tells which pressure was taken. The

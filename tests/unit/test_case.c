@@ -121,6 +121,46 @@ START_TEST(functions_of_position_are_those_of_the_case) {
 }
 END_TEST
 
+START_TEST(viscosity_may_be_a_function_of_the_case) {
+  const double gamma[] = {1, 2, 3}, p[] = {4, -5, 6};
+  double eta[3];
+  struct case_file *file = load(
+      "return { dimension = 2, domain = { size = 4, level = 5 },\n"
+      "grains = { density = 1, rheology = { 'user', eta_max = 17,\n"
+      "  viscosity = function(g, p, t) return g * p + t end } },\n" GRAVITY
+          SIDES OUTPUT "}");
+  const struct rheology *rheology = &case_params(file)->grains.rheology;
+  rheology_eval(rheology, 0.5, 3, gamma, p, eta);
+  ck_assert_double_eq(eta[0], 4.5);
+  ck_assert_double_eq(eta[1], 0.5); /* negative pressure counts as 0 */
+  ck_assert_double_eq(eta[2], 17);  /* bounds hold */
+  case_destroy(file);
+}
+END_TEST
+
+START_TEST(viscosity_that_fails_during_a_run_ends_it) {
+  const double gamma = 1, p = 1;
+  double eta;
+  struct case_file *file = load(
+      "return { dimension = 2, domain = { size = 4, level = 5 },\n"
+      "grains = { density = 1, rheology = { 'user',\n"
+      "  viscosity = function(g, p, t) return 1 - t end } },\n" GRAVITY SIDES
+          OUTPUT "}");
+  rheology_eval(&case_params(file)->grains.rheology, 2, 1, &gamma, &p, &eta);
+}
+END_TEST
+
+START_TEST(table_of_a_closure_is_freed_with_the_case) {
+  struct case_file *file = load(
+      "return { dimension = 2, domain = { size = 4, level = 5 },\n"
+      "grains = { density = 1500, rheology = 'lee_huang' },\n" GRAVITY SIDES
+          OUTPUT "}");
+  ck_assert_ptr_nonnull(case_params(file)->grains.rheology.table);
+  case_destroy(file);
+  ck_assert_int_eq(mem_live_blocks(), 0);
+}
+END_TEST
+
 START_TEST(uniform_velocity_is_a_function) {
   struct case_file *file = load("return { velocity = { 3, 4 }," REST "}");
   const struct function *f = &case_params(file)->velocity[1];
@@ -445,6 +485,10 @@ static TCase *files(void) {
   tcase_add_test(tcase, case_fills_params_and_defaults);
   tcase_add_test(tcase, density_of_phase_is_default_of_rho);
   tcase_add_test(tcase, functions_of_position_are_those_of_the_case);
+  tcase_add_test(tcase, viscosity_may_be_a_function_of_the_case);
+  tcase_add_exit_test(tcase, viscosity_that_fails_during_a_run_ends_it,
+                      EXIT_USER);
+  tcase_add_test(tcase, table_of_a_closure_is_freed_with_the_case);
   tcase_add_test(tcase, uniform_velocity_is_a_function);
   tcase_add_test(tcase, function_of_a_side_chooses_a_patch);
   tcase_add_test(tcase, bottom_is_lower_z_in_three_dimensions);

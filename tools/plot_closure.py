@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Friction, and solid fraction where known, against the inertial number.
+
+  tools/plot_closure.py PICTURE "NAME [p=..] [key=value ..]" ...
+                        [--talus build/talus] [--linear]
+                        [--dilatancy NU_0 A DELTA]
+
+One curve for each argument, as `talus rheology ... --csv` prints it: solid
+lines where contact carries 1 % of the pressure or more (state below 3), dotted
+from there, with a dot at the first such row. --dilatancy adds 1/nu = 1/nu_0 + a
+I^delta, dashed. Figure 1 of lee_huang_chiew_2015 is
+
+  tools/plot_closure.py fig1.png --linear --dilatancy 0.6 0.28 0.58 \\
+    "lee_huang p=1000 eta_S=0.38 d=5e-4 e_eff=0.46" \\
+    "lee_huang p=1000 eta_S=0.38 d=5e-4 e_eff=0.58" \\
+    "lee_huang p=1000 eta_S=0.38 d=5e-4 e_eff=0.70"
+"""
+import argparse
+import csv
+import subprocess
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+INERTIAL = 3
+COLOURS = ["#24639c", "#b5382b", "#3d7d3a", "#8a5a22", "#777777"]
+
+
+def read_curve(talus, words):
+    """Columns of the curve by name; NaN where a field is empty."""
+    text = subprocess.run([talus, "rheology", *words, "--csv"], check=True,
+                          stdout=subprocess.PIPE, text=True).stdout
+    rows = list(csv.DictReader(text.splitlines()))
+    return {name: np.array([float(row[name] or "nan") for row in rows])
+            for name in rows[0]}
+
+
+def draw(axes, curve, name, colour, label):
+    """One quantity, split at the first inertial row, which ends both parts."""
+    inertial = np.flatnonzero(curve["state"] >= INERTIAL)
+    kink = inertial[0] if len(inertial) else len(curve["I"]) - 1
+    I, y = curve["I"], curve[name]
+    axes.plot(I[:kink + 1], y[:kink + 1], color=colour, label=label)
+    if len(inertial):
+        axes.plot(I[kink:], y[kink:], ":", color=colour)
+        axes.plot(I[kink], y[kink], "o", color=colour, markersize=4)
+
+
+def shared_words(arguments):
+    """Words that all curves have: no need to say them of each."""
+    words = [argument.split() for argument in arguments]
+    return {w for w in words[0] if len(words) > 1 and all(w in x for x in words)}
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("picture", metavar="PICTURE")
+    parser.add_argument("curves", metavar="CURVE", nargs="+")
+    parser.add_argument("--talus", default="build/talus")
+    parser.add_argument("--linear", action="store_true")
+    parser.add_argument("--dilatancy", nargs=3, type=float,
+                        metavar=("NU_0", "A", "DELTA"))
+    options = parser.parse_args()
+
+    try:
+        curves = [read_curve(options.talus, argument.split())
+                  for argument in options.curves]
+    except (OSError, subprocess.CalledProcessError) as error:
+        sys.exit(f"plot_closure: {error}")
+    names = ["mu"]
+    if any(np.isfinite(curve["nu"]).any() for curve in curves):
+        names.append("nu")
+    shared = shared_words(options.curves)
+    figure, panels = plt.subplots(1, len(names), squeeze=False,
+                                  figsize=(5 * len(names), 4))
+    for axes, name in zip(panels[0], names):
+        for k, (curve, argument) in enumerate(zip(curves, options.curves)):
+            label = " ".join(w for w in argument.split() if w not in shared)
+            draw(axes, curve, name, COLOURS[k % len(COLOURS)], label)
+        axes.set_xlabel("inertial number I")
+        axes.set_xscale("linear" if options.linear else "log")
+    panels[0][0].set_ylabel("friction τ/p")
+    if "nu" in names:
+        axes = panels[0][1]
+        axes.set_ylabel("solid fraction")
+        if options.dilatancy:
+            nu_0, a, delta = options.dilatancy
+            I = np.linspace(*axes.get_xlim(), 400).clip(1e-4)
+            axes.plot(I, 1 / (1 / nu_0 + a * I**delta), "k--", linewidth=0.8,
+                      label="dilatancy law")
+    panels[0][-1].legend(frameon=False)
+    figure.suptitle(" ".join(w for w in options.curves[0].split()
+                             if w in shared))
+    figure.tight_layout()
+    figure.savefig(options.picture, dpi=120)
+
+
+if __name__ == "__main__":
+    main()
