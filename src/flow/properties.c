@@ -8,6 +8,10 @@
 #include "talus/plane.h"
 #include "talus/vof.h"
 
+/* A line this close to a surface, in leaf edges, from end to end lies half in
+ * the grains: round-off must not choose. */
+#define ALONG 1e-9
+
 static inline double unit_range(double c) { return fmin(fmax(c, 0), 1); }
 
 static inline double face_fraction(const struct mesh *mesh, const double *c,
@@ -148,6 +152,7 @@ static double line_fraction(const struct mesh *mesh, int d, int32_t f, int side,
   }
   const double reach = (side ? -0.5 : 0.5) * (coarse ? 0.5 : 1);
   const double at_face = at_node + reach * normal[d][leaf];
+  if (fmax(fabs(at_node), fabs(at_face)) < ALONG) return 0.5;
   if (at_node <= 0 && at_face <= 0) return 1;
   if (at_node > 0 && at_face > 0) return 0;
   return (at_node <= 0 ? -at_node : -at_face) / fabs(at_node - at_face);

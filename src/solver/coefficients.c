@@ -151,6 +151,7 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
                       const struct bc *const bc[]) {
   double *mass = h->e, *wall = h->r; /* free for now */
   h->nparts = nparts;
+  h->ncycles = h->rough_sweeps = 0;
   memset(h->w, 0, (size_t)h->nslots * sizeof *h->w);
   memset(mass, 0, (size_t)h->nslots * sizeof *mass);
   memset(wall, 0, (size_t)(h->nslots * nparts) * sizeof *wall);

@@ -185,15 +185,30 @@ static void copy_ghosts(struct hierarchy *h, int l) {
   plan_run(&h->level[l].copy, 1, &h->e, h->nparts, false);
 }
 
+/* Sweeps over the nodes near jumps of the coefficient. */
+KERNEL void smooth_rough(struct hierarchy *h, int l, int nparts) {
+  for (int k = 0; k < h->rough_sweeps; k++) {
+    for (int colour = 0; colour < NCHILD; colour++) {
+      const int32_t *begin = h->rough_begin + l * NCHILD + colour;
+      for (int32_t j = begin[0]; j < begin[1]; j++) {
+        relax(h, h->rough[j], h->rough[j] + 1, 1, nparts);
+      }
+      if (nparts > 1 || colour % HALF == HALF - 1) copy_ghosts(h, l);
+    }
+  }
+}
+
 /* Sweeps over the colours. Red and black keep the face neighbours apart; for
  * velocities, coupled across edges too, each child number is a colour of its
- * own, so that the order of nodes (and ranks) does not matter. */
+ * own, so that the order of nodes (and ranks) does not matter. The last sweep
+ * goes over all, as no residual may be left on black nodes. */
 KERNEL void smooth(struct hierarchy *h, int l, int nsweeps, bool from_zero,
                    int nparts) {
   const struct level *level = &h->level[l];
   const int stride = nparts > 1 ? HALF : 1;
   const int32_t n = level->nfamilies * HALF;
   for (int k = 0; k < nsweeps; k++) {
+    if (k == nsweeps - 1) smooth_rough(h, l, nparts);
     for (int colour = 0; colour < 2 * stride; colour++) {
       const int32_t half = level->begin + colour / stride * n;
       const int32_t begin = half + colour % stride;
@@ -248,6 +263,7 @@ KERNEL void run(struct hierarchy *h, double sign, const double *r, double *e,
 }
 
 void cycle_run(struct hierarchy *h, double sign, const double *r, double *e) {
+  h->ncycles++;
   if (h->nparts == 1) {
     run(h, sign, r, e, 1);
   } else {

@@ -323,7 +323,8 @@ void hierarchy_destroy(struct hierarchy *h) {
                    h->inverse,       h->e,          h->r,
                    h->coarse[0],     h->coarse[1],  h->coarse[2],
                    h->work_cells,    h->work_faces, h->residual,
-                   h->weight,        h->update,     h->scale};
+                   h->weight,        h->update,     h->scale,
+                   h->rough,         h->rough_begin};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   mem_free(h);
 }

@@ -8,6 +8,8 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 
+enum { KRYLOV_FEW = 8 }; /* directions, at least, between forgetting them */
+
 struct krylov_space {
   int64_t size;                                        /* of each direction */
   double *z[KRYLOV_DIRECTIONS], *q[KRYLOV_DIRECTIONS]; /* NULL: never used */
@@ -160,7 +162,8 @@ struct progress {
 
 /* Count an iteration. What round-off leaves of r along old directions cannot
  * be removed by new ones orthogonal to them: forget them when they are in the
- * way, 12 digits down. */
+ * way, 12 digits down; but not again before there are a few new ones, without
+ * which a hard system makes no way at all. */
 static void progress_count(struct progress *p, const double product[3]) {
   const double rr = product[2];
   const double gain = product[0] * product[0] / product[1];
@@ -169,7 +172,8 @@ static void progress_count(struct progress *p, const double product[3]) {
   p->waited = halved ? 0 : p->waited + 1;
   if (halved) p->reference = rr;
   p->kept += p->kept < KRYLOV_DIRECTIONS - 1;
-  if (gain < 0.1 * rr && rr < 1e-24 * p->first) p->kept = 0;
+  const bool stuck = gain < 0.1 * rr && rr < 1e-24 * p->first;
+  if (stuck && p->kept >= KRYLOV_FEW) p->kept = 0;
 }
 
 struct solve_stats krylov_solve(const struct krylov_system *s,

@@ -78,6 +78,13 @@ struct hierarchy {
   /* Conductance across a side of a family over that inside it, at most 1,
    * [families] */
   float (*limit)[NFACE];
+  /* Nodes near jumps of the coefficient, level by level and on each by child
+   * number, NULL: never needed; how often a cycle relaxes them besides */
+  int32_t *rough;       /* [nowned] */
+  int32_t *rough_begin; /* [nlevels * NCHILD + 1] */
+  int rough_sweeps;
+  int ncycles;           /* since coefficients_set */
+  double first_residual; /* before the first of them, or the second */
   /* Value beyond a wall over that inside, [nlevels] */
   double (*beyond)[DIM][MESH_MAX_PATCHES];
   double *coarse[3]; /* [trees * nparts] for conjugate gradients */
@@ -121,7 +128,11 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
 /* e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times
  * `sign`; e likewise. Collective. */
 void cycle_run(struct hierarchy *h, double sign, const double *r, double *e);
-/* The same on the trees alone (coarse.c): from h->r to h->e. */
+/* Before each cycle on r [nparts * nleaves]: if the first one has raised max
+ * |t r|, t = scale [nleaves] or 1 if NULL, the others relax nodes near jumps
+ * of the coefficient more often (rough.c). Uses h->e. Collective. */
+void rough_watch(struct hierarchy *h, const double *scale, const double *r);
+/* The cycle on the trees alone (coarse.c): from h->r to h->e. */
 void coarse_solve(struct hierarchy *h);
 
 #endif

@@ -48,6 +48,7 @@ static void apply(void *context, const double *z, double *q) {
 
 static void precondition(void *context, const double *r, double *z) {
   const struct context *k = context;
+  rough_watch(k->h, NULL, r);
   cycle_run(k->h, -1, r, z);
 }
 
