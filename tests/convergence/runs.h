@@ -89,7 +89,7 @@ static inline struct norms norms_of(const struct mesh *mesh,
     volume += mesh->volume[i];
     sum[0] += mesh->volume[i] * error[i] * error[i];
     sum[1] += mesh->volume[i] * fabs(error[i]);
-    most = fmax(most, fabs(error[i]));
+    if (!(fabs(error[i]) <= most)) most = fabs(error[i]); /* NaN stays */
   }
   volume = mesh_sum(mesh, volume);
   return (struct norms){sqrt(mesh_sum(mesh, sum[0]) / volume),

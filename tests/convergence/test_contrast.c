@@ -56,18 +56,21 @@ static int iterations(int base, int level, double contrast, double lambda) {
 static void sweep(struct report *report, const char *grid, int jumps,
                   double contrast, double lambda) {
   int count[N];
-  char name[80];
+  char name[80], counts[80], growth[80];
   const char *kind = contrast < 1 ? "soft" : "stiff";
-  snprintf(name, sizeof name, "%s disc %s %g lambda %g", kind, grid,
-           fmax(contrast, 1 / contrast), lambda);
+  snprintf(name, sizeof name, "%s %g", grid, fmax(contrast, 1 / contrast));
+  snprintf(counts, sizeof counts, "iterations: %s disc lambda %g", kind,
+           lambda);
+  snprintf(growth, sizeof growth,
+           "beyond 5/4 of two levels before: %s disc lambda %g", kind, lambda);
   const int first = jumps > 0 ? FIRST + 1 : FIRST; /* up to as many cells */
   for (int k = 0; k < N; k++) {
     const int level = first + k;
     count[k] = iterations(level - jumps, level, contrast, lambda);
   }
-  report_counts(report, name, "iterations", first, N, count, BAR, 0);
-  report_at_most(report, name, "iterations beyond 5/4 of two levels before",
-                 first + N - 1, count[N - 1] - 1.25 * count[N - 3], 2);
+  report_counts(report, name, counts, first, N, count, BAR, 0);
+  report_at_most(report, name, growth, first + N - 1,
+                 count[N - 1] - 1.25 * count[N - 3], 2);
 }
 
 static void run(struct report *report) {
