@@ -71,6 +71,14 @@ struct criterion {
   struct function function; /* FUNCTION: level as a real number */
 };
 
+/* Limiter of the slopes that advection predicts face values with, from the
+ * differences a, b to the two sides (0 where they differ in sign). */
+enum limiter {
+  LIMITER_NONE,       /* (a + b) / 2 always */
+  LIMITER_MINMOD,     /* the smaller one */
+  LIMITER_GENERALISED /* at most 1.3 times that and (a + b) / 2 */
+};
+
 struct params {
   char name[PARAMS_NAME_LENGTH]; /* case name, gives the output directory */
   char title[256];
@@ -108,6 +116,7 @@ struct params {
   int max_iterations;        /* of one linear solve */
   int picard;                /* repetitions of viscosity and projection */
   double theta;              /* 1: backward Euler, 1/2: Crank-Nicolson */
+  enum limiter limiter;      /* of momentum advection away from the surface */
   struct criterion criterion[PARAMS_MAX_CRITERIA];
   int ncriteria;   /* 0: uniform at level_max */
   int adapt_every; /* at most this many steps; 0: when needed */

@@ -65,7 +65,7 @@ struct simulation {
   struct field *c_old;
   struct field *u_old[DIM];    /* u^n while u is being advanced */
   struct field *u_half;        /* u_f^{n+1/2} */
-  struct field *cell[2 * DIM]; /* scratch */
+  struct field *cell[3 * DIM]; /* scratch */
   struct field *face[DIM + 2]; /* scratch */
 
   bool closed[MESH_MAX_PATCHES]; /* patches whose normal velocity is given */

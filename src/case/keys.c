@@ -15,6 +15,10 @@
 #define OPTIONAL .fallback = ""
 #define DEFAULT .fallback =
 
+/* enum limiter */
+static const char *const LIMITERS[] = {"none", "minmod", "generalised_minmod",
+                                       NULL};
+
 /* Units are SI; any consistent set will do. clang-format would take three
  * times the lines. */
 /* clang-format off */
@@ -107,6 +111,9 @@ static const struct key KEYS[] = {
     {"solver.theta", KEY_NUMBER, .low = 0.5, .high = 1, DEFAULT "1",
      .unit = "", .offset = AT(theta),
      .help = "viscous step: 1 backward Euler, 0.5 Crank-Nicolson"},
+    {"solver.limiter", KEY_CHOICE, ANY, DEFAULT "none", .unit = "",
+     .offset = AT(limiter), .choices = LIMITERS,
+     .help = "of slopes in momentum advection, for steep velocities"},
 
     {"output", KEY_SECTION, NEEDED, .help = "when to end and what to write"},
     {"output.stop", KEY_NUMBER, POSITIVE, NEEDED, .unit = "s",
@@ -223,6 +230,15 @@ static void range_text(const struct key *key, size_t size, char *text) {
     snprintf(text, size, "%s", "");
 }
 
+static void choices_text(const char *const *choices, size_t size, char *text) {
+  size_t used = 0;
+  for (int k = 0; choices[k] != NULL && used < size; k++) {
+    const char *before = k == 0 ? "" : choices[k + 1] ? ", " : " or ";
+    used += (size_t)snprintf(text + used, size - used, "%s\"%s\"", before,
+                             choices[k]);
+  }
+}
+
 void keys_allowed(const struct key *key, int dimension, size_t size,
                   char *text) {
   char range[64];
@@ -246,6 +262,9 @@ void keys_allowed(const struct key *key, int dimension, size_t size,
       break;
     case KEY_TEXT:
       snprintf(text, size, "a text");
+      break;
+    case KEY_CHOICE:
+      choices_text(key->choices, size, text);
       break;
     case KEY_TIMES:
       snprintf(text, size, "a list of times >= 0");

@@ -17,6 +17,7 @@ enum key_type {
   KEY_VECTOR,   /* double[3], one number per axis */
   KEY_INTEGERS, /* int[3], one per axis */
   KEY_TEXT,     /* char[256] */
+  KEY_CHOICE,   /* enum, one of some names */
   KEY_TIMES,    /* list of times */
   KEY_SHAPE,    /* function of position, a level set */
   KEY_VELOCITY, /* one number per axis or a function that returns them */
@@ -40,6 +41,9 @@ struct key {
   const char *unit; /* "" for a pure number or none */
   const char *help;
   size_t offset; /* in the struct that is filled */
+  /* KEY_CHOICE: names in the order of the enum, which begins at 0; NULL at the
+   * end. */
+  const char *const *choices;
 };
 
 /* Key i of the whole case, NULL past the last. Sections come before what is in

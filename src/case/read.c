@@ -218,6 +218,10 @@ static bool push_default(struct case_file *file, const struct key *key) {
   if (*text == '\0') return false;
   for (int i = 0; i < file->nrows; i++)
     if (strcmp(file->rows[i].key, text) == 0) text = file->rows[i].value;
+  if (key->type == KEY_CHOICE) {
+    lua_pushstring(L, text);
+    return true;
+  }
   double value = strtod(text, NULL);
   if (key->type != KEY_VECTOR && key->type != KEY_INTEGERS) {
     lua_pushnumber(L, value);
@@ -229,6 +233,17 @@ static bool push_default(struct case_file *file, const struct key *key) {
     lua_rawseti(L, -2, d + 1);
   }
   return true;
+}
+
+/* The name on top as a value of the enum. */
+static int choice_within(struct case_file *file, const struct key *key,
+                         const char *path) {
+  if (lua_type(file->L, -1) != LUA_TSTRING) fail_value(file, key, path);
+  const char *name = lua_tostring(file->L, -1);
+  for (int k = 0; key->choices[k] != NULL; k++) {
+    if (strcmp(name, key->choices[k]) == 0) return k;
+  }
+  fail_value(file, key, path);
 }
 
 static void store(struct case_file *file, const struct key *key,
@@ -243,6 +258,10 @@ static void store(struct case_file *file, const struct key *key,
       if (lua_type(L, -1) != LUA_TSTRING) fail_value(file, key, path);
       snprintf(text, VALUE_LENGTH, "%s", lua_tostring(L, -1));
       memcpy(target, text, VALUE_LENGTH);
+      return;
+    case KEY_CHOICE:
+      *(int *)target = choice_within(file, key, path);
+      snprintf(text, VALUE_LENGTH, "%s", lua_tostring(L, -1));
       return;
     case KEY_INTEGER:
     case KEY_LEVEL:

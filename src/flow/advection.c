@@ -5,15 +5,32 @@
 
 #include "talus/momentum.h"
 
+/* Of the generalised minmod. A square carried at an angle leaves [0, 1] by
+ * 0 at 1.2, 9e-5 at 1.3, 7e-4 at 1.5, 9e-3 at 2 (and 1e-3 with van Leer's
+ * harmonic mean); the error of a vortex falls by 10 % per step of 0.1. */
+#define LIMITER_FACTOR 1.3
+
+/* Slope of a leaf from the differences to its lower and upper neighbour. */
+static inline double limited(enum limiter limiter, double a, double b) {
+  const double mean = 0.5 * (a + b);
+  if (limiter == LIMITER_NONE) return mean;
+  if (a * b <= 0) return 0;
+  const double factor = limiter == LIMITER_MINMOD ? 1 : LIMITER_FACTOR;
+  const double most = factor * fmin(fabs(a), fabs(b));
+  return copysign(fmin(most, fabs(mean)), mean);
+}
+
 /* Slopes along d of u_e, and its upwind change along the other axes with the
  * velocities w: cell velocities, or (u_f given) the mean of the two faces. */
 static void cell_terms(const struct mesh *mesh, int d, const double *u_e,
-                       double *const u[DIM], const double *u_f, double *slope,
+                       double *const u[DIM], const double *u_f,
+                       enum limiter limiter, double *slope,
                        double *transverse) {
   const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t *node = mesh->stencil[i];
-    slope[i] = 0.5 * (u_e[node[upper]] - u_e[node[lower]]);
+    slope[i] =
+        limited(limiter, u_e[i] - u_e[node[lower]], u_e[node[upper]] - u_e[i]);
     double sum = 0;
     for (int t = 0; t < DIM; t++) {
       if (t == d) continue;
@@ -48,7 +65,7 @@ void advection_predict(const struct mesh *mesh, double dt, double *const u[DIM],
                        struct advection_work *work, double *u_f) {
   double *v[2] = {work->slope[0], work->transverse[0]};
   for (int d = 0; d < DIM; d++) {
-    cell_terms(mesh, d, u[d], u, NULL, v[0], v[1]);
+    cell_terms(mesh, d, u[d], u, NULL, work->limiter, v[0], v[1]);
     mesh_fill_ghosts(mesh, 2, v);
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
@@ -71,7 +88,7 @@ static void axis_fluxes(const struct mesh *mesh, int d, double dt,
   double *v[2 * DIM];
   for (int e = 0; e < DIM; e++) {
     v[2 * e] = work->slope[e], v[2 * e + 1] = work->transverse[e];
-    cell_terms(mesh, d, u[e], u, u_f, v[2 * e], v[2 * e + 1]);
+    cell_terms(mesh, d, u[e], u, u_f, work->limiter, v[2 * e], v[2 * e + 1]);
   }
   mesh_fill_ghosts(mesh, 2 * DIM, v);
   for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {

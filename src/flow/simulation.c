@@ -161,7 +161,8 @@ static void add_scratch(struct simulation *sim) {
   static const char *const normal[] = {"normal_x", "normal_y", "normal_z"};
   static const char *const old[] = {"old_x", "old_y", "old_z"};
   static const char *const cell[] = {"cell_0", "cell_1", "cell_2",
-                                     "cell_3", "cell_4", "cell_5"};
+                                     "cell_3", "cell_4", "cell_5",
+                                     "cell_6", "cell_7", "cell_8"};
   static const char *const face[] = {"face_0", "face_1", "face_2", "face_3",
                                      "face_4"};
   sim->rho = add_cell(sim, "density", "kg/m^3", "density", REMAP_NONE, false);
@@ -175,7 +176,7 @@ static void add_scratch(struct simulation *sim) {
     sim->normal[d] = add_cell(sim, normal[d], "1", "", REMAP_NONE, false);
     sim->u_old[d] = add_cell(sim, old[d], "m/s", "", REMAP_NONE, false);
   }
-  for (int k = 0; k < 2 * DIM; k++) {
+  for (int k = 0; k < 3 * DIM; k++) {
     sim->cell[k] = add_cell(sim, cell[k], "", "", REMAP_NONE, false);
   }
   sim->eta_f = add_face(sim, "face_viscosity");

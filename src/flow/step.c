@@ -295,19 +295,48 @@ static struct solve_stats make_solenoidal(struct simulation *sim, double dt,
   return stats;
 }
 
+/* What the predictor sees besides inertia: g, and with Crank-Nicolson the
+ * viscous acceleration of u^n, without which the step is of first order in
+ * time. As an explicit term it grows where eta dt / (rho h^2) > 7, so it is
+ * held at what it is for STIFF; backward Euler goes without. g is filled. */
+#define STIFF 2
+static void predictor_acceleration(struct simulation *sim, double dt,
+                                   double *const u[DIM], double *g[DIM]) {
+  const struct mesh *mesh = sim->mesh;
+  velocities(sim->g, g);
+  field_fill_many(mesh, DIM, sim->g);
+  if (sim->params->theta == 1) return;
+  struct field *const *sum = &sim->cell[2 * DIM];
+  velocities(sum, g);
+  viscous_force(mesh, sim->eta_f->v, u, g);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double rho = sim->rho->v[i], h = mesh->h[i];
+    double eta = 0;
+    for (int f = 0; f < NFACE; f++) {
+      eta = fmax(eta, sim->eta_f->v[mesh->cell_face[i][f]]);
+    }
+    const double part = fmin(1, STIFF * rho * h * h / (eta * dt));
+    for (int e = 0; e < DIM; e++) {
+      g[e][i] = sim->g[e]->v[i] + part * g[e][i] / rho;
+    }
+  }
+  field_fill_many(mesh, DIM, sum);
+}
+
 /* Stage 5: u_f at half steps, made exactly solenoidal, carries momentum away
  * from the interface. */
 static void advect_momentum(struct simulation *sim, double dt) {
   const struct mesh *mesh = sim->mesh;
   double *u[DIM], *g[DIM], *out[DIM];
-  velocities(sim->u_old, u), velocities(sim->g, g), velocities(sim->u, out);
-  struct advection_work work = {.volume = sim->face[1]->v};
+  velocities(sim->u_old, u), velocities(sim->u, out);
+  struct advection_work work = {.limiter = sim->params->limiter,
+                                .volume = sim->face[1]->v};
   for (int e = 0; e < DIM; e++) {
     work.slope[e] = sim->cell[e]->v;
     work.transverse[e] = sim->cell[DIM + e]->v;
     work.flux[e] = sim->face[2 + e]->v;
   }
-  field_fill_many(mesh, DIM, sim->g);
+  predictor_acceleration(sim, dt, u, g);
   advection_predict(mesh, dt, u, g, sim->closed, &work, sim->u_half->v);
   sim->predictor = make_solenoidal(sim, 0.5 * dt, sim->u_half->v);
   advection_momentum(mesh, dt, u, g, sim->u_half->v,

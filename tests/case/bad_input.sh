@@ -74,6 +74,9 @@ bad_edit not_integer 'not_integer.lua:2: domain.level = 5.5: an integer' \
 bad_edit negative_density \
   'negative_density.lua:4: grains.density = -1: a number > 0' \
   'density = 1,' 'density = -1,'
+bad_edit no_such_limiter \
+  'no_such_limiter.lua:9: solver.limiter = "min": "none", "minmod" or "gener' \
+  'output =' 'solver = { limiter = "min" }, output ='
 bad_edit level_40 'level_40.lua:2: domain.level = 40: .*from 1 to 24' \
   'level = 5' 'level = 40'
 bad_edit nan 'nan.lua:2: domain.size = -?nan: a number > 0' 'size = 4' \

@@ -81,6 +81,7 @@ START_TEST(case_fills_params_and_defaults) {
   ck_assert_double_eq(params->tolerance_viscous, 1e-4);
   ck_assert(isinf(params->dt_max));
   ck_assert_double_eq(params->theta, 1);
+  ck_assert_int_eq(params->limiter, LIMITER_NONE);
   ck_assert_double_eq(params->stop, 3);
   ck_assert_int_eq(params->ncriteria, 0);
   case_destroy(file);
@@ -217,6 +218,28 @@ START_TEST(bottom_is_lower_z_in_three_dimensions) {
   ck_assert(params->single_phase);
   ck_assert(!params->pressure_level_given);
   case_destroy(file);
+}
+END_TEST
+
+static const char *const LIMITER_NAME[] = {"none", "minmod",
+                                           "generalised_minmod"};
+START_TEST(limiter_is_read_by_name) {
+  char text[1024], printed_text[TEXT_LENGTH], row[64];
+  snprintf(text, sizeof text,
+           "return { solver = { limiter = '%s' },\n" REST "}",
+           LIMITER_NAME[_i]);
+  struct case_file *file = load(text);
+  ck_assert_int_eq(case_params(file)->limiter, _i);
+  printed(file, case_write_parameters, printed_text);
+  snprintf(row, sizeof row, "\nsolver.limiter,%s,,case\n", LIMITER_NAME[_i]);
+  ck_assert_ptr_nonnull(strstr(printed_text, row));
+  case_destroy(file);
+}
+END_TEST
+
+START_TEST(other_limiters_are_refused) {
+  load(_i ? "return { solver = { limiter = 'Minmod' },\n" REST "}"
+          : "return { solver = { limiter = 1 },\n" REST "}");
 }
 END_TEST
 
@@ -495,6 +518,8 @@ static TCase *files(void) {
   tcase_add_exit_test(tcase, friction_without_pressure_level_is_refused,
                       EXIT_USER);
   tcase_add_test(tcase, pressure_level_is_enough);
+  tcase_add_loop_test(tcase, limiter_is_read_by_name, 0, 3);
+  tcase_add_loop_exit_test(tcase, other_limiters_are_refused, EXIT_USER, 0, 2);
   tcase_add_test(tcase, criteria_take_level_of_domain_by_default);
   tcase_add_test(tcase, times_are_sorted_and_end_with_the_run);
   tcase_add_test(tcase, command_line_overrides_each_kind);
