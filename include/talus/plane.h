@@ -105,11 +105,14 @@ void plane_centroid(const double n[DIM], double alpha, double x[DIM]);
  *
  * A step that does not lower E is halved; at most 8 are tried. The result is
  *
- *   n = n_m + (1 - E(n_f)/E(n_m)) (n_f - n_m)                            (4)
+ *   n = n_m + w (n_f - n_m),  w = max(1 - E(n_f)/E(n_m), E(n_m)/E_r) <= 1  (4)
  *
  * that is n_f for a plane, where E falls to round-off, and nearly n_m on a
- * curved or under-resolved interface, where E hardly falls and n_f is worse: on
- * a circle of 1 to 60 cells its rms error is 1.2 to 2.4 times that of n_m. n_m
+ * curved interface, where E hardly falls and n_f is worse: on a circle of 4 to
+ * 60 cells its rms error is 1.2 to 2.4 times that of n_m. Where n_m itself
+ * misses the stencil by more than E_r = 0.1 (2D) or 1 (3D), as in threads one
+ * or two cells wide, it is no better than any, and the fit keeps them together:
+ * the circle of the reversed vortex comes back with a third of the error. n_m
  * stays if it fits to 1e-13, if no step lowers E, or if c_0 is not in (0, 1).
  *
  * Accuracy: a plane to 1e-12 radian; to 1e-6 (3D) where c_0 or 1 - c_0 is

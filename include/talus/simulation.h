@@ -53,6 +53,7 @@ struct simulation {
   struct field *u_f;    /* face velocity, m/s */
   struct field *p;      /* pressure, Pa */
   struct field *g[DIM]; /* gravity minus pressure gradient over density */
+  struct field *viscous_g[DIM]; /* what viscosity added in the last step */
 
   /* Properties and scratch, remade every step */
   struct field *rho;                 /* leaves */

@@ -12,6 +12,7 @@
 #include "talus/memory.h"
 #include "talus/shapes.h"
 #include "talus/step.h"
+#include "talus/vof.h"
 
 /* Patches of the mesh: one per side, then one per further boundary of the
  * case and axis it lies across (slip needs to know its normal). */
@@ -132,6 +133,7 @@ static void add_state(struct simulation *sim) {
                                          "velocity_z"};
   static const char *const force[] = {"acceleration_x", "acceleration_y",
                                       "acceleration_z"};
+  static const char *const viscous[] = {"viscous_x", "viscous_y", "viscous_z"};
   sim->c = add_cell(sim, "fraction", "1", "volume fraction of grains",
                     REMAP_VOF, true);
   for (int k = 0; k < sim->params->ntracers; k++) {
@@ -145,6 +147,9 @@ static void add_state(struct simulation *sim) {
     sim->g[d] = add_cell(sim, force[d], "m/s^2",
                          "gravity less pressure gradient over density",
                          REMAP_AVERAGE, false);
+    sim->viscous_g[d] =
+        add_cell(sim, viscous[d], "m/s^2", "viscous force over density",
+                 REMAP_AVERAGE, false);
   }
   sim->p = add_cell(sim, "pressure", "Pa", "pressure", REMAP_LINEAR, true);
   sim->u_f = fields_add(&sim->fields, sim->mesh, "face_velocity", "m/s",
@@ -234,6 +239,29 @@ static void fill_shape(const struct simulation *sim,
   }
 }
 
+/* Velocity of a leaf with grains and gas in it, which may move apart: that of
+ * its mass, sampled on a lattice. */
+static double mixed_velocity(const struct simulation *sim,
+                             const struct function *velocity, int32_t i) {
+  enum { SAMPLES = 8 }; /* along an edge */
+  const struct params *params = sim->params;
+  double mass = 0, momentum = 0;
+  for (int k = 0; k < (DIM == 2 ? 64 : 512); k++) {
+    const int at[] = {k % SAMPLES, k / SAMPLES % SAMPLES,
+                      k / (SAMPLES * SAMPLES)};
+    double x[3] = {0};
+    for (int e = 0; e < DIM; e++) {
+      x[e] = sim->mesh->x[i][e] +
+             sim->mesh->h[i] * ((at[e] + 0.5) / SAMPLES - 0.5);
+    }
+    const bool grains = params->shape.eval(params->shape.context, x) > 0;
+    const double rho = grains ? params->grains.density : params->gas.density;
+    mass += rho;
+    momentum += rho * velocity->eval(velocity->context, x);
+  }
+  return momentum / mass;
+}
+
 static void fill_state(struct simulation *sim) {
   const struct params *params = sim->params;
   const struct mesh *mesh = sim->mesh;
@@ -247,7 +275,9 @@ static void fill_state(struct simulation *sim) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       double x[3] = {0};
       for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
-      sim->u[d]->v[i] = function->eval(function->context, x);
+      sim->u[d]->v[i] = vof_is_cut(sim->c->v[i])
+                            ? mixed_velocity(sim, function, i)
+                            : function->eval(function->context, x);
     }
   }
 }

@@ -296,31 +296,18 @@ static struct solve_stats make_solenoidal(struct simulation *sim, double dt,
 }
 
 /* What the predictor sees besides inertia: g, and with Crank-Nicolson the
- * viscous acceleration of u^n, without which the step is of first order in
- * time. As an explicit term it grows where eta dt / (rho h^2) > 7, so it is
- * held at what it is for STIFF; backward Euler goes without. g is filled. */
-#define STIFF 2
-static void predictor_acceleration(struct simulation *sim, double dt,
-                                   double *const u[DIM], double *g[DIM]) {
-  const struct mesh *mesh = sim->mesh;
-  velocities(sim->g, g);
-  field_fill_many(mesh, DIM, sim->g);
-  if (sim->params->theta == 1) return;
-  struct field *const *sum = &sim->cell[2 * DIM];
+ * viscous acceleration of the last step, without which this one is of first
+ * order in time. It is bounded, as an implicit solve has made it. Filled. */
+static void predictor_acceleration(struct simulation *sim, double *g[DIM]) {
+  const bool viscous = sim->params->theta < 1;
+  struct field *const *sum = viscous ? &sim->cell[2 * DIM] : sim->g;
   velocities(sum, g);
-  viscous_force(mesh, sim->eta_f->v, u, g);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double rho = sim->rho->v[i], h = mesh->h[i];
-    double eta = 0;
-    for (int f = 0; f < NFACE; f++) {
-      eta = fmax(eta, sim->eta_f->v[mesh->cell_face[i][f]]);
-    }
-    const double part = fmin(1, STIFF * rho * h * h / (eta * dt));
-    for (int e = 0; e < DIM; e++) {
-      g[e][i] = sim->g[e]->v[i] + part * g[e][i] / rho;
+  for (int e = 0; e < DIM && viscous; e++) {
+    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+      g[e][i] = sim->g[e]->v[i] + sim->viscous_g[e]->v[i];
     }
   }
-  field_fill_many(mesh, DIM, sum);
+  field_fill_many(sim->mesh, DIM, sum);
 }
 
 /* Stage 5: u_f at half steps, made exactly solenoidal, carries momentum away
@@ -336,7 +323,7 @@ static void advect_momentum(struct simulation *sim, double dt) {
     work.transverse[e] = sim->cell[DIM + e]->v;
     work.flux[e] = sim->face[2 + e]->v;
   }
-  predictor_acceleration(sim, dt, u, g);
+  predictor_acceleration(sim, g);
   advection_predict(mesh, dt, u, g, sim->closed, &work, sim->u_half->v);
   sim->predictor = make_solenoidal(sim, 0.5 * dt, sim->u_half->v);
   advection_momentum(mesh, dt, u, g, sim->u_half->v,
@@ -379,6 +366,8 @@ static double velocity_scale(const struct simulation *sim, double dt) {
   return mesh_max(sim->mesh, most);
 }
 
+/* Of u* + dt g + dt (viscous acceleration of the last step), which is the
+ * first guess, the solve makes the new velocity and acceleration. */
 static void diffuse_momentum(struct simulation *sim, double dt) {
   const struct mesh *mesh = sim->mesh;
   const struct params *params = sim->params;
@@ -391,14 +380,22 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
   }
   viscous_rhs(sim, dt, rhs);
   for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * sim->g[e]->v[i];
+    double *inviscid = sim->cell[2 * DIM + e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      inviscid[i] = u[e][i] + dt * sim->g[e]->v[i];
+      u[e][i] = inviscid[i] + dt * sim->viscous_g[e]->v[i];
+    }
   }
   sim->scale = velocity_scale(sim, dt);
   sim->viscous = viscous_solve(
       mesh, sim->hierarchy, sim->rho->v, sim->eta_f->v, params->theta * dt, rhs,
       bc, params->tolerance_viscous * sim->scale, params->max_iterations, u);
   for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] -= dt * sim->g[e]->v[i];
+    const double *inviscid = sim->cell[2 * DIM + e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      sim->viscous_g[e]->v[i] = (u[e][i] - inviscid[i]) / dt;
+      u[e][i] -= dt * sim->g[e]->v[i];
+    }
   }
 }
 

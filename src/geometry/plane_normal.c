@@ -7,6 +7,9 @@
 
 static const int STRIDE[3] = {1, 3, 9};
 
+/* Misfit of the mixed normal from which on the fit is taken as it is. */
+static const double ROUGH = DIM == 2 ? 0.1 : 1.;
+
 /* The two paired neighbours of cell i at distance s. */
 static inline double pair(const double *c, int i, int s) {
   return c[i - s] + c[i + s];
@@ -212,7 +215,8 @@ void plane_normal(const double c[PLANE_STENCIL],
   fit_normal(c, known, fit, sum);
   for (int d = 0; d < DIM; d++) along += fit[d] * n[d];
   if (!(sum[0] < start) || along <= 0.) return; /* no better; turned over */
-  const double weight = 1. - sum[0] / start;    /* equation (4) */
+  const double gain = 1. - sum[0] / start, misfit = start / ROUGH;
+  const double weight = gain > misfit ? gain : min2(1., misfit); /* eq. (4) */
   for (int d = 0; d < DIM; d++) n[d] += weight * (fit[d] - n[d]);
   normalise(n);
 }
