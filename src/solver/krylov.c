@@ -8,6 +8,10 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 
+/* A guess passes only at this part of the tolerance: errors just below it, of
+ * one sign, would add up from step to step. */
+#define KRYLOV_GUESS 1e-3
+
 enum { KRYLOV_FEW = 8 }; /* directions, at least, between forgetting them */
 
 struct krylov_space {
@@ -186,7 +190,8 @@ struct solve_stats krylov_solve(const struct krylov_system *s,
   for (int k = 0;; k = (k + 1) % KRYLOV_DIRECTIONS) {
     double product[3];
     if (!isfinite(stats.residual_after)) return stats;
-    if (stats.residual_after <= tolerance) break;
+    const double enough = stats.iterations > 0 ? 1 : KRYLOV_GUESS;
+    if (stats.residual_after <= enough * tolerance) break;
     if (stats.iterations == max_iterations) return stats;
     if (stats.iterations == 0) s->prepare(s->context);
     make_direction(s, space, k, progress.kept, r, product);
