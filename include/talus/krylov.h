@@ -20,7 +20,7 @@
 
 #include "talus/solve.h"
 
-enum { KRYLOV_DIRECTIONS = 24, KRYLOV_PATIENCE = 12 };
+enum { KRYLOV_DIRECTIONS = 16, KRYLOV_PATIENCE = 12 };
 
 /* What GCR needs to know of a system of `nparts` arrays of `n` numbers each
  * (parts are the components of a vector; they follow one another, so vectors
@@ -48,12 +48,13 @@ void krylov_space_destroy(struct krylov_space *space);
 int64_t krylov_space_bytes(const struct krylov_space *space);
 
 /* Reduce r (in: residual of x, out: of the result) until max |t r| <=
- * tolerance, adding to x; both [nparts * n]. KRYLOV_PATIENCE iterations that
- * leave the norm of r almost as it was, or a NaN, end it as SOLVE_STALLED; x
- * is then the iterate of least norm. Directions are allocated the first time
- * they are needed. Collective. */
+ * tolerance, adding to x; r [nparts * n], x[nparts] [n]. KRYLOV_PATIENCE
+ * iterations that leave the norm of r almost as it was, or a NaN, end it as
+ * SOLVE_STALLED; x is then the iterate of least norm. Directions are allocated
+ * the first time they are needed. Collective. */
 struct solve_stats krylov_solve(const struct krylov_system *system,
                                 struct krylov_space *space, double tolerance,
-                                int max_iterations, double *r, double *x);
+                                int max_iterations, double *r,
+                                double *const x[]);
 
 #endif

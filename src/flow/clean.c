@@ -30,7 +30,7 @@ struct clean {
   int32_t nslots;
   double *shared;          /* [nslots NCHILD] */
   double *net;             /* [nleaves + ninner] outflow, m^DIM/s */
-  double (*change)[NFACE]; /* [nleaves + ninner] change of face fluxes */
+  double (*change)[NFACE]; /* [ninner] change of face fluxes */
   double *tree_net;        /* [ntrees] */
   double (*tree_change)[NFACE];
 };
@@ -142,7 +142,7 @@ struct clean *clean_new(const struct mesh *mesh) {
   mark_straddling(clean, mesh);
   const size_t n = (size_t)mesh->nleaves + (size_t)clean->ninner;
   clean->net = MEM_NEW(double, n);
-  clean->change = mem_alloc(n, sizeof *clean->change);
+  clean->change = mem_alloc((size_t)clean->ninner, sizeof *clean->change);
   return clean;
 }
 
@@ -276,9 +276,28 @@ static void share_out(const double net[NCHILD], double change[NCHILD][NFACE]) {
   }
 }
 
-static void treat_node(struct clean *clean, int32_t nleaves, int32_t k) {
+/* A node is told how its face fluxes change: a leaf changes the velocities of
+ * the faces it owns. */
+static void tell_node(struct clean *clean, const struct mesh *mesh,
+                      int32_t node, const double change[NFACE], double *u_f) {
+  if (node >= mesh->nleaves) {
+    memcpy(clean->change[node - mesh->nleaves], change, sizeof *clean->change);
+    return;
+  }
+  const double area = mesh->volume[node] / mesh->h[node];
+  for (int f = 0; f < NFACE; f++) {
+    const int32_t face = mesh->cell_face[node][f];
+    if (face < mesh->nfaces && mesh->face_owner[face] == node &&
+        mesh->face_patch[face] < 0) {
+      u_f[face] += change[f] / area;
+    }
+  }
+}
+
+static void treat_node(struct clean *clean, const struct mesh *mesh, int32_t k,
+                       double *u_f) {
   double net[NCHILD], change[NCHILD][NFACE];
-  const double *above = clean->change[nleaves + k];
+  const double *above = clean->change[k];
   for (int c = 0; c < NCHILD; c++) {
     const int32_t child = clean->child[k][c];
     net[c] = clean->slot[k] >= 0 ? clean->shared[clean->slot[k] * NCHILD + c]
@@ -292,7 +311,7 @@ static void treat_node(struct clean *clean, int32_t nleaves, int32_t k) {
   share_out(net, change);
   for (int c = 0; c < NCHILD; c++) {
     const int32_t child = clean->child[k][c];
-    if (child >= 0) memcpy(clean->change[child], change[c], sizeof change[c]);
+    if (child >= 0) tell_node(clean, mesh, child, change[c], u_f);
   }
 }
 
@@ -306,21 +325,8 @@ void clean_face_velocity(struct clean *clean, const struct mesh *mesh,
   balance_trees(clean);
   for (int32_t t = 0; t < clean->ntrees; t++) {
     if (clean->root[t] < 0) continue;
-    memcpy(clean->change[clean->root[t]], clean->tree_change[t],
-           sizeof *clean->change);
+    tell_node(clean, mesh, clean->root[t], clean->tree_change[t], u_f);
   }
-  for (int32_t k = 0; k < clean->ninner; k++) {
-    treat_node(clean, mesh->nleaves, k);
-  }
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double area = mesh->volume[i] / mesh->h[i];
-    for (int f = 0; f < NFACE; f++) {
-      const int32_t face = mesh->cell_face[i][f];
-      if (face < mesh->nfaces && mesh->face_owner[face] == i &&
-          mesh->face_patch[face] < 0) {
-        u_f[face] += clean->change[i][f] / area;
-      }
-    }
-  }
+  for (int32_t k = 0; k < clean->ninner; k++) treat_node(clean, mesh, k, u_f);
   mesh_fill_faces(mesh, 1, &u_f);
 }

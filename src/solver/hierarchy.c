@@ -256,7 +256,6 @@ static void allocate(struct hierarchy *h) {
   h->work_faces = MEM_NEW(double, (size_t)mesh->nfaces_all *DIM);
   h->residual = MEM_NEW(double, nleaves);
   h->weight = MEM_NEW(double, nleaves);
-  h->update = MEM_NEW(double, nleaves);
   h->scale = MEM_NEW(double, mesh->nleaves);
   h->krylov = krylov_space_new();
 }
@@ -323,8 +322,8 @@ void hierarchy_destroy(struct hierarchy *h) {
                    h->inverse,       h->e,          h->r,
                    h->coarse[0],     h->coarse[1],  h->coarse[2],
                    h->work_cells,    h->work_faces, h->residual,
-                   h->weight,        h->update,     h->scale,
-                   h->rough,         h->rough_begin};
+                   h->weight,        h->scale,      h->rough,
+                   h->rough_begin};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   mem_free(h);
 }
@@ -336,7 +335,7 @@ int64_t hierarchy_bytes(const struct hierarchy *h) {
 
   return h->nactive * (link * (int64_t)sizeof(int32_t) + 1) + h->nslots * slot +
          h->njumps * (int64_t)(sizeof(struct jump) + DIM * sizeof(double)) +
-         mesh->nleaves * (int64_t)(sizeof(int32_t) + 3 * DIM * number) +
+         mesh->nleaves * (int64_t)(sizeof(int32_t) + (2 * DIM + 1) * number) +
          (int64_t)(mesh->ncells + mesh->nfaces_all) * DIM * number +
          krylov_space_bytes(h->krylov);
 }

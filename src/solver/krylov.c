@@ -182,7 +182,8 @@ static void progress_count(struct progress *p, const double product[3]) {
 
 struct solve_stats krylov_solve(const struct krylov_system *s,
                                 struct krylov_space *space, double tolerance,
-                                int max_iterations, double *r, double *x) {
+                                int max_iterations, double *r,
+                                double *const x[]) {
   const int64_t n = (int64_t)s->n * s->nparts;
   struct solve_stats stats = {.status = SOLVE_STALLED};
   struct progress progress = {0};
@@ -199,7 +200,9 @@ struct solve_stats krylov_solve(const struct krylov_system *s,
     if (!isfinite(a) || a == 0) return stats;
     progress_count(&progress, product);
     if (progress.waited == KRYLOV_PATIENCE) return stats;
-    add_to(n, x, a, space->z[k]);
+    for (int c = 0; c < s->nparts; c++) {
+      add_to(s->n, x[c], a, space->z[k] + (int64_t)c * s->n);
+    }
     add_to(n, r, -a, space->q[k]);
     stats.iterations++;
     stats.residual_after = max_residual(s, r);

@@ -89,10 +89,10 @@ struct hierarchy {
   double (*beyond)[DIM][MESH_MAX_PATCHES];
   double *coarse[3]; /* [trees * nparts] for conjugate gradients */
   /* Work of the outer solver */
-  double *work_cells;                 /* [DIM * ncells] */
-  double *work_faces;                 /* [DIM * nfaces_all] */
-  double *residual, *weight, *update; /* [DIM * nleaves] */
-  double *scale;                      /* [nleaves] */
+  double *work_cells;        /* [DIM * ncells] */
+  double *work_faces;        /* [DIM * nfaces_all] */
+  double *residual, *weight; /* [DIM * nleaves] */
+  double *scale;             /* [nleaves] */
   struct krylov_space *krylov;
 };
 

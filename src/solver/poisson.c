@@ -110,7 +110,7 @@ static struct solve_stats solve_singular(const struct krylov_system *system,
   }
   shift(k->mesh, -before[1], r);
   struct solve_stats stats =
-      krylov_solve(system, k->h->krylov, tolerance, max_iterations, r, p);
+      krylov_solve(system, k->h->krylov, tolerance, max_iterations, r, &p);
   means(k, rhs, p, r, after);
   shift(k->mesh, before[0] - after[0], p);
   return stats;
@@ -136,7 +136,7 @@ struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
   for (int32_t i = 0; i < mesh->nleaves; i++) r[i] = rhs[i] - r[i];
   struct solve_stats stats =
       has_level(mesh, alpha_f, bc)
-          ? krylov_solve(&system, h->krylov, tolerance, max_iterations, r, p)
+          ? krylov_solve(&system, h->krylov, tolerance, max_iterations, r, &p)
           : solve_singular(&system, rhs, tolerance, max_iterations, p);
   mesh_fill(mesh, 1, &p, &bc, false);
   return stats;

@@ -151,7 +151,6 @@ struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
     double *r = h->residual + (int64_t)e * n;
     for (int32_t i = 0; i < n; i++) r[i] = rhs[e][i] - r[i];
   }
-  memset(h->update, 0, (size_t)n * DIM * sizeof *h->update);
   double *scale = h->scale;
   for (int32_t i = 0; i < n; i++) scale[i] = 1 / rho[i];
   const struct krylov_system system = {.comm = mesh->comm,
@@ -163,12 +162,8 @@ struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
                                        .apply = apply,
                                        .weight = h->weight,
                                        .scale = scale};
-  struct solve_stats stats = krylov_solve(
-      &system, h->krylov, tolerance, max_iterations, h->residual, h->update);
-  for (int e = 0; e < DIM; e++) {
-    const double *update = h->update + (int64_t)e * n;
-    for (int32_t i = 0; i < n; i++) u[e][i] += update[i];
-  }
+  struct solve_stats stats = krylov_solve(&system, h->krylov, tolerance,
+                                          max_iterations, h->residual, u);
   mesh_fill(mesh, DIM, u, bc, false);
   return stats;
 }
