@@ -53,6 +53,7 @@ local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
 local eta_max = param("eta_max", 10, "cap on viscosity, in rho sqrt(g L0^3)")
 local slip = param("slip", 0, "slip length of the floor, in L0; 0: rough")
+local rho_gas = param("rho_gas", 1e-3, "density of the gas, in rho")
 local shift = param("shift", 0, "cells by which the side misses a face")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 local times = param("times", {0.66, 0.95, 1.24, 1.52, 2.28},
@@ -61,7 +62,7 @@ param("reference", a == 6.26 and "reference/contact_dynamics_a6.26.csv" or "",
       "outlines of the grains that `talus plot` lays over ours")
 
 local rho, g = 1, 1                     -- the units
-local rho_gas, eta_gas = 1e-3, 1e-4     -- rho, rho sqrt(g L0^3)
+local eta_gas = 1e-4                    -- rho sqrt(g L0^3)
 local eta_min = rho * math.sqrt(g * d^3)
 local width, height = 1, a              -- of the column
 -- a box so much smaller that its cells end `shift` cells off the side
