@@ -173,5 +173,5 @@ static void run(struct report *report) {
 }
 
 const struct convergence_case collapse_case = {
-    "collapse", "a collapse on finer grids and with shorter steps", 2, false,
+    "collapse", "a collapse on finer grids and with shorter steps", 2, true,
     run};
