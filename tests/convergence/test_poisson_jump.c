@@ -61,5 +61,4 @@ static void run(struct report *report) {
 }
 
 const struct convergence_case poisson_jump_case = {
-    "poisson_jump", "Poisson equation, coefficient jump of 1000", 2, true,
-    run};
+    "poisson_jump", "Poisson equation, coefficient jump of 1000", 2, true, run};
