@@ -9,6 +9,14 @@
  * density plus
  * gravity; the cells then receive the mean of (gravity - alpha grad p) of
  * their faces, so that hydrostatic balance is kept to round-off.
+ *
+ * With rho_f = (rho_0 + rho_1)/2 on faces, cells to faces by mean momentum and
+ * faces to cells by the plain mean are adjoint to each other in the norm
+ * sum rho u^2 / 2, so on one level the approximate projection adds no energy.
+ * Over levels this asks that rho_f come from the leaves, and that a coarse leaf
+ * whose density varies over its virtual children lend its faces its own
+ * velocity: in an interpolated one the gas next to grains would move their
+ * mass.
  */
 #ifndef TALUS_PROJECTION_H
 #define TALUS_PROJECTION_H
@@ -23,7 +31,7 @@ struct hierarchy;
 struct projection {
   const struct mesh *mesh;
   struct hierarchy *hierarchy;
-  const double *rho;       /* [>= nleaves + nghosts] density */
+  const double *rho;       /* [ncells] density, filled */
   const double *alpha_f;   /* [nfaces_all], 0 on closed patches */
   const double *gravity_f; /* [nfaces_all], 0 on closed patches */
   const struct bc *bc;     /* of the pressure, [MESH_MAX_PATCHES] */

@@ -3,9 +3,10 @@
  *
  *   rho = c rho_1 + (1 - c) rho_2              [lagree_staron_popinet_2011,
  *   eta = 1 / (c/eta_1 + (1 - c)/eta_2)         eqs. 2.7, 2.8]
- * The density of a face takes for c the mean of the two nodes. The viscosity
- * of a face takes the part theta of the line between its nodes that lies
- * below the planes of the two leaves: phases in series, as a layer sheared
+ * The density of a face is the mean of those of its two leaves, over levels
+ * too: a face between light leaves may not be heavy (projection.h). The
+ * viscosity of a face takes the part theta of the line between its nodes that
+ * lies below the planes of the two leaves: phases in series, as a layer sheared
  * along its surface feels them. The mean of c would put gas between a cut
  * cell more than half full and the grains below it, and the top layer would
  * slide. Both parts of a line share the stress, each with a shear rate of its

@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/projection.h"
 
+#include <math.h>
+
 #include "talus/poisson.h"
+
+/* The density of a coarse leaf varies where it does by more than this part. */
+#define EVEN 1e-3
 
 struct solve_stats projection_project(const struct projection *projection,
                                       double dt, double *u_f, double *p) {
@@ -27,17 +32,32 @@ struct solve_stats projection_project(const struct projection *projection,
   return stats;
 }
 
+/* What a face sees of the velocity on `side`: a node, or the leaf itself where
+ * the density of a coarse leaf varies over its virtual children. */
+static int32_t source_of_velocity(const struct mesh *mesh, const double *rho,
+                                  int32_t f, int side) {
+  const int32_t node = mesh->face_node[f][side];
+  const int32_t leaf = mesh->face_leaf[f][side];
+  if (node < mesh->begin_virtual || node >= mesh->begin_boundary) return node;
+  const int32_t first = node - (node - mesh->begin_virtual) % NCHILD;
+  for (int k = 0; k < NCHILD; k++) {
+    if (fabs(rho[first + k] - rho[leaf]) > EVEN * rho[leaf]) return leaf;
+  }
+  return node;
+}
+
 void projection_face_velocity(const struct projection *projection, double dt,
                               double *const u[DIM], double *u_f) {
   const struct mesh *mesh = projection->mesh;
+  const double *rho = projection->rho;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const int32_t *node = mesh->face_node[f];
       const int32_t *leaf = mesh->face_leaf[f];
-      const double lower = projection->rho[leaf[0] < 0 ? leaf[1] : leaf[0]];
-      const double upper = projection->rho[leaf[1] < 0 ? leaf[0] : leaf[1]];
-      u_f[f] =
-          (lower * u[d][node[0]] + upper * u[d][node[1]]) / (lower + upper);
+      const double lower = rho[leaf[0] < 0 ? leaf[1] : leaf[0]];
+      const double upper = rho[leaf[1] < 0 ? leaf[0] : leaf[1]];
+      u_f[f] = (lower * u[d][source_of_velocity(mesh, rho, f, 0)] +
+                upper * u[d][source_of_velocity(mesh, rho, f, 1)]) /
+               (lower + upper);
       u_f[f] += dt * projection->gravity_f[f];
     }
   }

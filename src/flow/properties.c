@@ -14,10 +14,12 @@
 
 static inline double unit_range(double c) { return fmin(fmax(c, 0), 1); }
 
+/* Of leaves, not nodes: see properties.h. */
 static inline double face_fraction(const struct mesh *mesh, const double *c,
                                    int32_t f) {
-  const int32_t *node = mesh->face_node[f];
-  return 0.5 * (unit_range(c[node[0]]) + unit_range(c[node[1]]));
+  const int32_t *of =
+      mesh->face_patch[f] < 0 ? mesh->face_leaf[f] : mesh->face_node[f];
+  return 0.5 * (unit_range(c[of[0]]) + unit_range(c[of[1]]));
 }
 
 void properties_density(const struct mesh *mesh, const double density[2],

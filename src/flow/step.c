@@ -241,7 +241,7 @@ static void update_density(struct simulation *sim) {
   vof_reconstruct(mesh, sim->c->v, normal, sim->plane->v);
   properties_density(mesh, density, sim->c->v, sim->closed, sim->rho->v,
                      sim->alpha_f->v);
-  mesh_fill_ghosts(mesh, 1, &sim->rho->v);
+  field_fill(mesh, sim->rho);
   properties_gravity(mesh, density, &balance, sim->c->v, normal, sim->plane->v,
                      sim->alpha_f->v, sim->gravity_f->v);
 }

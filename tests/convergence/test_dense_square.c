@@ -8,10 +8,14 @@
  * over, over a travel of 3 D: the speed of its centre of volume, and its shape
  * against the square shifted by the travel.
  *
- * The bar on the shape is missed at 1e3: front corners are worn off and the
- * sides bulge by a third of a cell. Ratios 1e3, 1e4, 1e5, 1e6 give 0.058,
+ * The bar on the shape is missed at 1e3: 0.058; ratios 1e4, 1e5, 1e6 give
  * 0.022, 0.010, 0.003; 64 cells per D 0.051; grains of viscosity 1e-3 to 1
- * rho U D, the last next to rigid, 0.052 to 0.058. */
+ * rho U D 0.052 to 0.058. Cause: on a face between two cells of the top layer
+ * the stress has the viscosity of the grains, but its transverse derivative
+ * reaches into the gas. With the least viscosity of the lines next to it that
+ * cross the surface: 0.033 (0.034, 0.033, 0.032 with 16, 32, 64 cells), and
+ * 0.009, 0.002 for grains of 0.1, 1 rho U D.
+ */
 #include "../mesh/transport.h"
 #include "report.h"
 #include "runs.h"
@@ -118,4 +122,4 @@ static void run(struct report *report) {
 }
 
 const struct convergence_case dense_square_case = {
-    "dense_square", "dense square through light gas", 2, true, run};
+    "dense_square", "dense square through light gas", 2, false, run};

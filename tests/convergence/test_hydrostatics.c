@@ -5,11 +5,7 @@
  * cells anywhere, tilted ones at any slope; on one level, and with a rectangle
  * of finer cells whose sides the surface crosses. Velocities are in units of
  * sqrt(g H), H = 0.53 the depth below the middle of the box.
- *
- * Known to fail: slope 0.2 on levels 4 and 5. What round-off leaves grows by
- * exp(0.14 t), whatever dt, in the gas where a fine cell with c = 0.66 meets a
- * coarse one with c = 0.016; after 5000 steps |u| is 0.02. Not with a ratio of
- * densities of 100 or gas a hundred times as viscous. */
+ */
 #include "report.h"
 #include "runs.h"
 
