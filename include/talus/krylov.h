@@ -9,7 +9,7 @@
  * is <a, b> = sum_i s_i a_i b_i with weights s given by the caller; s_i =
  * 1 / A_ii^2 measures a residual by the correction it asks for, without which
  * coefficients that differ by 1e4 or more stop the convergence. The test is
- * on max |t_i r_i| with a scale t of its own; a guess must pass it a thousand
+ * on max |t_i r_i| with a scale t of its own; a guess must pass it a million
  * times better to need no iteration.
  */
 #ifndef TALUS_KRYLOV_H
@@ -20,7 +20,7 @@
 
 #include "talus/solve.h"
 
-enum { KRYLOV_DIRECTIONS = 16, KRYLOV_PATIENCE = 12 };
+enum { KRYLOV_DIRECTIONS = 24, KRYLOV_PATIENCE = 12 };
 
 /* What GCR needs to know of a system of `nparts` arrays of `n` numbers each
  * (parts are the components of a vector; they follow one another, so vectors

@@ -10,7 +10,7 @@
 
 /* A guess passes only at this part of the tolerance: errors just below it, of
  * one sign, would add up from step to step. */
-#define KRYLOV_GUESS 1e-3
+#define KRYLOV_GUESS 1e-6
 
 enum { KRYLOV_FEW = 8 }; /* directions, at least, between forgetting them */
 

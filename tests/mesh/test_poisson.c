@@ -238,7 +238,7 @@ START_TEST(good_guess_needs_no_iteration) {
   solve_run(&s, 1e-8);
   solve_run(&s, 2e-8); /* round-off apart the same residual */
   ck_assert_int_eq(s.stats.iterations, 1);
-  solve_run(&s, 1e-4);
+  solve_run(&s, 0.1);
   ck_assert_int_eq(s.stats.iterations, 0);
   ck_assert_int_eq(s.stats.status, SOLVE_CONVERGED);
   solve_end(&s);
