@@ -11,6 +11,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "talus/closure_fields.h"
 #include "talus/diagnostics.h"
 #include "talus/error.h"
 #include "talus/forest.h"
@@ -136,7 +137,9 @@ static void write_row(struct run *run, const struct diagnostics *d) {
                                         d->potential - energy->dissipated,
                            .divergence_volume = sim->divergence_volume,
                            .pressure_residual = sim->pressure.residual_after,
-                           .viscous_residual = sim->viscous.residual_after};
+                           .viscous_residual = sim->viscous.residual_after,
+                           .mean_shear_rate = d->shear_rate,
+                           .repeat_change = sim->repeat_change};
   series_write(run->series, &row);
 }
 
@@ -164,6 +167,7 @@ static void write_tables(struct run *run) {
 static void write_snapshot(struct run *run) {
   if (!snapshot_due(run)) return;
   const struct simulation *sim = run->sim;
+  closure_fields_update(sim);
   struct snapshot_heading heading = {.time = sim->time,
                                      .step = sim->step,
                                      .length_scale = run->params->length_scale,

@@ -420,6 +420,11 @@ def plot_history(options, parameters, units):
             ax.set_title(ax.lines[0].get_label(), loc="left")
     axes[0, 0].set_title("front and height of the heap", loc="left")
     axes[0, 1].set_title("energy of the grains", loc="left")
+    rest = (run_data.arrest_time(s) if "mean_shear_rate" in s else None)
+    if rest is not None:
+        axes[1, 0].set_title(f"fastest grains; at rest after {rest:.3g}",
+                             loc="left")
+        axes[1, 0].axvline(rest, color=GREY, lw=0.8)
     for ax in axes[1]:
         ax.set_xlabel(label("time", units.time))
     volume = s["volume"]

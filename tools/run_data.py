@@ -44,6 +44,19 @@ def read_series(directory):
     return read_table(pathlib.Path(directory) / "series.csv")
 
 
+def arrest_time(series, part=0.01):
+    """When a flow comes to rest: the last time at which the mean shear rate of
+    the grains exceeds a `part` of its largest value. None if it never falls so
+    far, or does not stay there. A regularised fluid only creeps; the rate falls
+    by orders of magnitude within sqrt(H0/g), so the part matters little
+    [valette_2019, section 3.5.1]."""
+    rate = series["mean_shear_rate"]
+    moving = np.nonzero(rate > part * rate.max())[0]
+    if len(moving) == 0 or moving[-1] == len(rate) - 1:
+        return None
+    return float(series["time"][moving[-1]])
+
+
 def read_profiles(directory):
     """[(time, x, height)] in order of time. In 3D the row of columns along x
     that holds the highest one."""

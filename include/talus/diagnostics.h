@@ -6,6 +6,7 @@
  *   potential  -sum rho_grains c V g.x          x: centre of the grains in a
  *              cell, for cut cells the centroid below their plane
  *   max_speed  |u| of cells with c > 1/2, m/s
+ *   shear_rate mean over the grains, 1/s (closure_fields.h)
  *
  * Sums are compensated [neumaier_1974, doi:10.1002/zamm.19740540106] and added
  * over ranks in rank order, so that the volume is good to a few 1e-16 and the
@@ -22,14 +23,14 @@ struct simulation;
 struct diagnostics {
   double volume;
   double kinetic, potential;
-  double max_speed;
+  double max_speed, shear_rate;
   double front, height;     /* of the outline, m */
   struct droplets droplets; /* not in the outline */
   struct outline outline;
 };
 
-/* Measure the state, which is left as it is. Collective; the same on all
- * ranks. Free with diagnostics_free. */
+/* Measure the state, which is left as it is but for scratch. Collective; the
+ * same on all ranks. Free with diagnostics_free. */
 void diagnostics_measure(const struct simulation *sim,
                          struct diagnostics *diagnostics);
 void diagnostics_free(struct diagnostics *diagnostics);

@@ -50,6 +50,12 @@ struct phase {
   struct rheology rheology;
 };
 
+/* Friction of the walls of a narrow channel (side_walls.h), 2D. */
+struct side_walls {
+  double mu;    /* friction coefficient, 0: no walls */
+  double width; /* m between the walls */
+};
+
 struct tracer {
   char name[PARAMS_NAME_LENGTH];
   struct function shape; /* positive inside, at t = 0 */
@@ -100,9 +106,10 @@ struct params {
   /* Physics */
   double gravity[3];
   struct phase grains, gas;
-  bool single_phase;           /* grains fill the box; no VOF, no gas */
-  struct function shape;       /* level set of the grains, positive inside */
-  struct function velocity[3]; /* initial velocity, absent: rest */
+  struct side_walls side_walls; /* that the grains slide on */
+  bool single_phase;            /* grains fill the box; no VOF, no gas */
+  struct function shape;        /* level set of the grains, positive inside */
+  struct function velocity[3];  /* initial velocity, absent: rest */
   struct tracer tracer[PARAMS_MAX_TRACERS]; /* passive VOF tracers */
   int ntracers;
   bool pressure_level_given; /* needed when no boundary sets the pressure */

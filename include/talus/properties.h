@@ -9,8 +9,14 @@
  * lies below the planes of the two leaves: phases in series, as a layer sheared
  * along its surface feels them. The mean of c would put gas between a cut
  * cell more than half full and the grains below it, and the top layer would
- * slide. Both parts of a line share the stress, each with a shear rate of its
- * own. eta of each phase comes from the face's own strain rate and pressure:
+ * slide. For the same reason a node starts in the phase that has most of the
+ * mass of its leaf, as the velocity is that one's: at the surface if its centre
+ * is on the other side. Cut leaves less than half full would else lie on a
+ * cushion of gas: the surface of a heap at rest, slope 0.25, mu_s = 0.32,
+ * crept at 0.045, 0.022, 0.007 sqrt(g L0) on cells of L0/16, 32, 64, whatever
+ * eta_max; now at less than 5e-4. Both parts of a line share the stress, each
+ * with a shear rate of its own. eta of each phase comes from the face's own
+ * strain rate and pressure:
  *   shear_rate = sqrt(2 D:D), normal derivatives from the two nodes,
  *   tangential ones the mean of central differences at both; the pressure
  *   varies along the line as it does at rest, with slopes in proportion to

@@ -23,6 +23,9 @@ struct series_row {
                        - dissipated */
   double divergence_volume; /* sum over steps of sum c div u dt V, m^DIM */
   double pressure_residual, viscous_residual; /* in units of the tolerance */
+  double mean_shear_rate; /* of the grains, 1/s: tells when they come to rest */
+  double repeat_change;   /* of the velocity in the last Picard repetition, m/s,
+                             0 without */
 };
 
 struct series;

@@ -14,6 +14,8 @@
 #include "talus/params.h"
 #include "talus/solve.h"
 
+enum { SIMULATION_MAX_KNOWN = 8 };
+
 struct clean;
 struct forest;
 struct hierarchy;
@@ -66,8 +68,15 @@ struct simulation {
   struct field *c_old;
   struct field *u_old[DIM];    /* u^n while u is being advanced */
   struct field *u_half;        /* u_f^{n+1/2} */
+  struct field *drag;          /* of side walls (side_walls.h); NULL: none */
+  struct field *pull[DIM];     /* viscous acceleration, with side walls only */
   struct field *cell[3 * DIM]; /* scratch */
   struct field *face[DIM + 2]; /* scratch */
+
+  /* For output, set when it is due (closure_fields.h) */
+  struct field *shear_rate;
+  struct field *known[SIMULATION_MAX_KNOWN]; /* outputs of the closure */
+  int nknown;
 
   bool closed[MESH_MAX_PATCHES]; /* patches whose normal velocity is given */
   bool open[MESH_MAX_PATCHES];   /* the others */
@@ -76,7 +85,10 @@ struct simulation {
   double time, dt;
   int64_t step;
   double travel; /* cells the surface may have moved since adaptation */
-  struct solve_stats pressure, predictor, viscous; /* of the last step */
+  struct solve_stats pressure, predictor, viscous; /* of the last step, by
+                              Picard repetitions all their iterations and the
+                              worst residual */
+  double repeat_change; /* of |u_f|, m/s, in the last Picard repetition */
   struct energy energy;
   double scale;             /* largest speed, of the viscous tolerance */
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */

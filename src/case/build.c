@@ -122,6 +122,13 @@ static void check_phases(struct case_file *file) {
                  "it, so give its density and rheology");
 }
 
+static void check_walls(struct case_file *file) {
+  if (file->params.dimension == 3 && file->params.side_walls.mu > 0)
+    read_fail_at(file, "grains.side_walls",
+                 "grains.side_walls is for two dimensions, a channel seen in "
+                 "its plane: in 3D let boundaries be the walls");
+}
+
 static void check_grid(struct case_file *file) {
   const struct params *params = &file->params;
   if (params->level_min > params->level_max)
@@ -166,6 +173,7 @@ void build_params(struct case_file *file) {
   file->params.pressure_level_given = !lua_isnil(L, -1);
   lua_pop(L, 1);
   check_phases(file);
+  check_walls(file);
   check_grid(file);
   boundary_check(file);
 }

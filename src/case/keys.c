@@ -51,6 +51,13 @@ static const struct key KEYS[] = {
     {"grains.shape", KEY_SHAPE, OPTIONAL, .unit = "m", .offset = AT(shape),
      .help = "level set at t = 0, positive inside; left out with gas, they "
              "fill the box"},
+    {"grains.side_walls", KEY_SECTION, OPTIONAL,
+     .help = "friction of a narrow channel's walls, 2D"},
+    {"grains.side_walls.mu", KEY_NUMBER, NOT_NEGATIVE, NEEDED, .unit = "",
+     .offset = AT(side_walls.mu),
+     .help = "friction coefficient of grains on them"},
+    {"grains.side_walls.width", KEY_NUMBER, POSITIVE, NEEDED, .unit = "m",
+     .offset = AT(side_walls.width), .help = "distance between them"},
     {"gas", KEY_SECTION, OPTIONAL, .help = "the light phase around them"},
     {"gas.density", KEY_NUMBER, POSITIVE, NEEDED, .unit = "kg/m^3",
      .offset = AT(gas.density), .help = "density"},

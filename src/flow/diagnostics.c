@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "talus/closure_fields.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 #include "talus/plane.h"
@@ -110,6 +111,7 @@ void diagnostics_measure(const struct simulation *sim,
   droplets_find(mesh, c, heap, &diagnostics->droplets);
   outline_measure(mesh, c, heap, outline_axis(sim->params->gravity),
                   &diagnostics->outline);
+  diagnostics->shear_rate = closure_fields_shear_rate(sim);
   diagnostics->height = outline_height(&diagnostics->outline);
   diagnostics->front = outline_front(&diagnostics->outline);
   mem_free(heap);

@@ -137,24 +137,36 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
   mesh_fill_faces(mesh, 1, &gravity_f);
 }
 
+/* Where the grains are. */
+struct grains {
+  const double *density; /* of grains and gas */
+  const double *c;
+  double *const *normal; /* planes of cut leaves */
+  const double *plane;
+};
+
 /* Part of the line from the node on `side` of a face to the face that lies
  * in the grains, by the plane of the leaf there; the node is the leaf itself
- * or one of its children. */
+ * or one of its children. It begins on the side of the phase with most of the
+ * leaf's mass, whose velocity the leaf has: at the surface if the node is on
+ * the other. */
 static double line_fraction(const struct mesh *mesh, int d, int32_t f, int side,
-                            const double *c, double *const normal[DIM],
-                            const double *plane) {
+                            const struct grains *grains) {
   const int32_t leaf = mesh->face_leaf[f][side];
   const int32_t node = mesh->face_node[f][side];
-  if (!vof_is_cut(c[leaf])) return unit_range(c[leaf]);
+  const double c = grains->c[leaf];
+  if (!vof_is_cut(c)) return unit_range(c);
   const bool coarse = node >= mesh->begin_virtual;
-  double at_node = -plane[leaf];
+  const bool heavy = c * grains->density[0] > (1 - c) * grains->density[1];
+  double at_node = -grains->plane[leaf];
   for (int e = 0; e < DIM && coarse; e++) {
     const int upper = (node - mesh->begin_virtual) % NCHILD >> e & 1;
-    at_node += normal[e][leaf] * (upper ? 0.25 : -0.25);
+    at_node += grains->normal[e][leaf] * (upper ? 0.25 : -0.25);
   }
   const double reach = (side ? -0.5 : 0.5) * (coarse ? 0.5 : 1);
-  const double at_face = at_node + reach * normal[d][leaf];
+  const double at_face = at_node + reach * grains->normal[d][leaf];
   if (fmax(fabs(at_node), fabs(at_face)) < ALONG) return 0.5;
+  at_node = heavy ? fmin(at_node, 0) : fmax(at_node, 0);
   if (at_node <= 0 && at_face <= 0) return 1;
   if (at_node > 0 && at_face > 0) return 0;
   return (at_node <= 0 ? -at_node : -at_face) / fabs(at_node - at_face);
@@ -163,12 +175,11 @@ static double line_fraction(const struct mesh *mesh, int d, int32_t f, int side,
 /* Both halves of the line of a face; one across a boundary mirrors the
  * other. */
 static void line_halves(const struct mesh *mesh, int d, int32_t f,
-                        const double *c, double *const normal[DIM],
-                        const double *plane, double half[2]) {
+                        const struct grains *grains, double half[2]) {
   const int32_t *leaf = mesh->face_leaf[f];
   for (int side = 0; side < 2; side++) {
     if (leaf[side] >= 0) {
-      half[side] = line_fraction(mesh, d, f, side, c, normal, plane);
+      half[side] = line_fraction(mesh, d, f, side, grains);
     }
   }
   if (leaf[0] < 0) half[0] = half[1];
@@ -217,17 +228,16 @@ void properties_shear_rate(const struct mesh *mesh, double *const u[DIM],
 
 /* theta_f, p_f [nfaces]: part of each face's line in the grains, and the
  * pressure at the face. */
-static void face_pressure(const struct mesh *mesh, const double density[2],
-                          const double gravity[DIM], const double *c,
-                          double *const normal[DIM], const double *plane,
-                          const double *p, const bool *closed, double *theta_f,
-                          double *p_f) {
+static void face_pressure(const struct mesh *mesh, const struct grains *grains,
+                          const double gravity[DIM], const double *p,
+                          const bool *closed, double *theta_f, double *p_f) {
+  const double *density = grains->density;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
       const int patch = mesh->face_patch[f];
       double half[2] = {0}, rho[2];
-      line_halves(mesh, d, f, c, normal, plane, half);
+      line_halves(mesh, d, f, grains, half);
       for (int side = 0; side < 2; side++) {
         rho[side] = density[1] + half[side] * (density[0] - density[1]);
       }
@@ -323,8 +333,8 @@ void properties_viscosity(const struct mesh *mesh, double time,
   double *theta_f = work[0], *p_f = work[1];
   const double density[2] = {grains->density,
                              gas ? gas->density : grains->density};
-  face_pressure(mesh, density, gravity, c, normal, plane, p, closed, theta_f,
-                p_f);
+  const struct grains where = {density, c, normal, plane};
+  face_pressure(mesh, &where, gravity, p, closed, theta_f, p_f);
   rheology_eval(&grains->rheology, time, mesh->nfaces, shear_f, p_f, eta_f);
   if (gas) {
     const struct rheology *const phase[2] = {&grains->rheology, &gas->rheology};

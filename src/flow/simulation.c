@@ -162,6 +162,29 @@ static struct field *add_face(struct simulation *sim, const char *name) {
                     REMAP_NONE);
 }
 
+static void add_known(struct simulation *sim) {
+  const struct rheology_model *model = sim->params->grains.rheology.model;
+  sim->shear_rate = add_cell(sim, "shear_rate", "1/s", "shear rate sqrt(2 D:D)",
+                             REMAP_NONE, true);
+  CHECK(model->noutputs <= SIMULATION_MAX_KNOWN, "%s has %d outputs",
+        model->name, model->noutputs);
+  for (; sim->nknown < model->noutputs; sim->nknown++) {
+    const struct rheology_quantity *quantity = &model->outputs[sim->nknown];
+    sim->known[sim->nknown] = add_cell(sim, quantity->name, quantity->unit,
+                                       quantity->title, REMAP_NONE, true);
+  }
+}
+
+static void add_walls(struct simulation *sim) {
+  static const char *const pull[] = {"pull_x", "pull_y", "pull_z"};
+  sim->drag = add_cell(sim, "drag", "kg/m^3/s", "drag of the side walls",
+                       REMAP_NONE, false);
+  for (int d = 0; d < DIM; d++) {
+    sim->pull[d] = add_cell(sim, pull[d], "m/s^2", "viscous acceleration",
+                            REMAP_AVERAGE, false);
+  }
+}
+
 static void add_scratch(struct simulation *sim) {
   static const char *const normal[] = {"normal_x", "normal_y", "normal_z"};
   static const char *const old[] = {"old_x", "old_y", "old_z"};
@@ -181,6 +204,8 @@ static void add_scratch(struct simulation *sim) {
     sim->normal[d] = add_cell(sim, normal[d], "1", "", REMAP_NONE, false);
     sim->u_old[d] = add_cell(sim, old[d], "m/s", "", REMAP_NONE, false);
   }
+  add_known(sim);
+  if (sim->params->side_walls.mu > 0) add_walls(sim);
   for (int k = 0; k < 3 * DIM; k++) {
     sim->cell[k] = add_cell(sim, cell[k], "", "", REMAP_NONE, false);
   }

@@ -22,6 +22,7 @@
 #include "talus/momentum.h"
 #include "talus/projection.h"
 #include "talus/properties.h"
+#include "talus/side_walls.h"
 #include "talus/simulation.h"
 #include "talus/viscous.h"
 #include "talus/vof.h"
@@ -366,6 +367,42 @@ static double velocity_scale(const struct simulation *sim, double dt) {
   return mesh_max(sim->mesh, most);
 }
 
+/* rho + dt drag of the side walls, in scratch. */
+static const double *mass_with_walls(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  const struct params *params = sim->params;
+  double gravity = 0, *mass = sim->frozen->v;
+  struct side_walls_state state = {
+      .rho = sim->rho->v, .c = sim->c->v, .p = sim->p->v};
+  for (int e = 0; e < DIM; e++) {
+    double *u = sim->cell[e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      u[i] = sim->u[e]->v[i] + dt * (sim->g[e]->v[i] + sim->pull[e]->v[i]);
+    }
+    gravity = fmax(gravity, fabs(params->gravity[e]));
+    state.u[e] = u, state.u_old[e] = sim->u_old[e]->v;
+  }
+  const double creep =
+      fmax(SIDE_WALLS_CREEP * sqrt(gravity * params->size), 1e-300);
+  side_walls_drag(mesh, &params->side_walls, dt, creep, &state, sim->drag->v);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    mass[i] = sim->rho->v[i] + dt * sim->drag->v[i];
+  }
+  return mass;
+}
+
+/* What the viscous step has added besides the friction of the walls, as an
+ * acceleration: rhs and mass as they were in it. */
+static void keep_pull(struct simulation *sim, double dt, const double *mass) {
+  for (int e = 0; e < DIM && sim->drag; e++) {
+    const double *u = sim->u[e]->v, *rhs = sim->cell[e]->v;
+    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+      sim->pull[e]->v[i] = (mass[i] * u[i] - rhs[i]) /
+                           (sim->params->theta * dt * sim->rho->v[i]);
+    }
+  }
+}
+
 /* Of u* + dt g + dt (viscous acceleration of the last step), which is the
  * first guess, the solve makes the new velocity and acceleration. */
 static void diffuse_momentum(struct simulation *sim, double dt) {
@@ -374,6 +411,7 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
   double *u[DIM], *rhs[DIM];
   const struct bc *bc[DIM];
   velocities(sim->u, u);
+  const double *mass = sim->drag ? mass_with_walls(sim, dt) : sim->rho->v;
   for (int e = 0; e < DIM; e++) {
     rhs[e] = sim->cell[e]->v;
     bc[e] = sim->u[e]->bc;
@@ -388,8 +426,9 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
   }
   sim->scale = velocity_scale(sim, dt);
   sim->viscous = viscous_solve(
-      mesh, sim->hierarchy, sim->rho->v, sim->eta_f->v, params->theta * dt, rhs,
-      bc, params->tolerance_viscous * sim->scale, params->max_iterations, u);
+      mesh, sim->hierarchy, mass, sim->eta_f->v, params->theta * dt, rhs, bc,
+      params->tolerance_viscous * sim->scale, params->max_iterations, u);
+  keep_pull(sim, dt, mass);
   for (int e = 0; e < DIM; e++) {
     const double *inviscid = sim->cell[2 * DIM + e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -410,6 +449,43 @@ static void repeat_properties(struct simulation *sim, int k) {
     memcpy(k > 0 ? sim->u[e]->v : advected, k > 0 ? advected : sim->u[e]->v,
            bytes);
   }
+}
+
+/* How far repetition k has moved u_f, which is kept for the next one. The
+ * predictor, whose place it takes, has done its work. */
+static void measure_repetition(struct simulation *sim, int k) {
+  const struct mesh *mesh = sim->mesh;
+  double *last = sim->u_half->v, change = 0;
+  if (sim->params->picard == 0) return;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    change = fmax(change, fabs(sim->u_f->v[f] - last[f]));
+    last[f] = sim->u_f->v[f];
+  }
+  if (k == 0) return;
+  sim->repeat_change = mesh_max(mesh, change);
+  log_info("step %lld, repetition %d: velocity changes by %.3g of %.3g",
+           (long long)sim->step, k, sim->repeat_change, sim->scale);
+}
+
+/* Solves of one step: the iterations of both, and the worse of the two, so
+ * that a repetition that converges does not hide one that did not. */
+static void add_solve(struct solve_stats *last,
+                      const struct solve_stats *before) {
+  const int iterations = last->iterations + before->iterations;
+  const bool failed = last->status != SOLVE_CONVERGED;
+  if (before->status != SOLVE_CONVERGED
+          ? !failed || !(before->residual_after <= last->residual_after)
+          : !failed && before->residual_after > last->residual_after) {
+    *last = *before;
+  }
+  last->iterations = iterations;
+}
+
+static void add_wall_work(struct simulation *sim, double dt) {
+  double *u[DIM];
+  if (!sim->drag) return;
+  velocities(sim->u, u);
+  sim->energy.dissipated += dt * side_walls_power(sim->mesh, sim->drag->v, u);
 }
 
 /* Where no boundary sets the pressure its mean is the case's: the closures
@@ -533,10 +609,15 @@ static void advance_state(struct simulation *sim, double dt, double dt_c) {
   add_dissipation(sim, dt), lap(sim, STAGE_RHEOLOGY);
   advect_momentum(sim, dt), lap(sim, STAGE_ADVECTION);
   for (int k = 0; k <= sim->params->picard; k++) {
+    const struct solve_stats viscous = sim->viscous, pressure = sim->pressure;
     repeat_properties(sim, k), lap(sim, STAGE_RHEOLOGY);
     diffuse_momentum(sim, dt), lap(sim, STAGE_VISCOUS);
     project(sim, dt), lap(sim, STAGE_PROJECTION);
+    if (k > 0) add_solve(&sim->viscous, &viscous);
+    if (k > 0) add_solve(&sim->pressure, &pressure);
+    measure_repetition(sim, k), lap(sim, STAGE_OTHER);
   }
+  add_wall_work(sim, dt);
 }
 
 int step_advance(struct simulation *sim, double dt_max) {

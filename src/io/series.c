@@ -12,7 +12,7 @@ static const char header[] =
     "step,time,dt,cells,front,height,volume,kinetic,potential,dissipated,"
     "max_speed,pressure_iterations,viscous_iterations,wall_seconds,droplets,"
     "droplet_volume,numerical,divergence_volume,pressure_residual,"
-    "viscous_residual";
+    "viscous_residual,mean_shear_rate,repeat_change";
 
 struct series *series_open(const char *directory, bool keep,
                            int64_t last_step) {
@@ -44,6 +44,8 @@ void series_write(struct series *series, const struct series_row *row) {
   csv_real(csv, row->divergence_volume);
   csv_short(csv, row->pressure_residual);
   csv_short(csv, row->viscous_residual);
+  csv_short(csv, row->mean_shear_rate);
+  csv_short(csv, row->repeat_change);
   csv_end_row(csv);
 }
 

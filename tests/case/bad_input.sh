@@ -98,6 +98,16 @@ bad_edit closure_missing 'closure_missing.lua:4: grains.rheology.d is missing' \
 bad_edit closure_together \
   'closure_together.lua:4: grains.rheology: nu_min < nu_0 < nu_max' \
   '"mu_i", d = 0.05' '"lee_huang", nu_0 = 0.64'
+bad_edit walls_width 'walls_width.lua:4: grains.side_walls.width is missing' \
+  'density = 1,' 'density = 1, side_walls = { mu = 0.2 },'
+bad_edit walls_key 'walls_key.lua:4: unknown key grains.side_walls.w = 1' \
+  'density = 1,' 'density = 1, side_walls = { mu = 0.2, w = 1 },'
+bad_case walls_3d 'walls_3d.lua:1: grains.side_walls is for two dimensions' \
+  'return { dimension = 3, grains = { side_walls = { mu = 0.2, width = 1 },
+    density = 1, rheology = { "bagnold", d = 0.1 } }, gravity = { 0, 0, -1 },
+  domain = { size = 1, level = 2 }, output = { stop = 1 },
+  boundary = { left = "slip", right = "slip", front = "slip", back = "slip",
+    bottom = "slip", top = "outflow" } }'
 bad_edit viscosity_missing \
   'viscosity_missing.lua:4: grains.rheology.viscosity is missing' \
   '"mu_i", d = 0.05' '"user"'

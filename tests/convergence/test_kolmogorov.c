@@ -50,9 +50,9 @@ static void flow_start(struct flow *s, enum grid grid, int level) {
   const struct mesh *mesh = s->bench->mesh;
   s->hierarchy = hierarchy_new(mesh);
   s->eta_f = face_values(mesh, wave_eta, NULL, false);
-  s->rho = MEM_NEW(double, mesh->nleaves + mesh->nghosts);
+  s->rho = MEM_NEW(double, mesh->ncells);
   bench_vector(s->bench, names, s->u);
-  for (int32_t i = 0; i < mesh->nleaves; i++) s->rho[i] = 1;
+  for (int32_t i = 0; i < mesh->ncells; i++) s->rho[i] = 1;
   for (int d = 0; d < DIM; d++) s->rhs[d] = MEM_NEW(double, mesh->nleaves);
 }
 

@@ -232,6 +232,8 @@ static struct simulation *state_new(struct world *w, struct params *params) {
   for (int d = 0; d < DIM; d++)
     sim->u[d] = fields_add(&sim->fields, w->mesh, name[d], "m/s", "velocity",
                            FIELD_CELL, REMAP_LINEAR);
+  sim->shear_rate = fields_add(&sim->fields, w->mesh, "shear_rate", "1/s",
+                               "shear rate", FIELD_CELL, REMAP_NONE);
   return sim;
 }
 
@@ -272,6 +274,7 @@ START_TEST(energies_of_a_tilted_half_space_are_exact) {
   ck_assert_double_le(fabs(d.volume - volume), 1e-14);
   ck_assert_double_le(fabs(d.kinetic - 0.5 * 2 * 9 * volume), 1e-13);
   ck_assert_double_le(fabs(d.max_speed - 3), 0);
+  ck_assert_double_eq(d.shear_rate, 0); /* they move as one */
   /* Simpson's rule is off by 1e-3 h in the cells along the surface; cell
    * centres would give 1e-3 and more */
   ck_assert_double_le(fabs(d.potential / potential - 1), 2e-5);

@@ -38,6 +38,11 @@ static struct rheology make(const char *name) {
       if (strcmp(model->keys[k].name, PARAMETERS[i].key) == 0 &&
           (isnan(model->keys[k].initial) || strcmp(name, "mu_i") == 0))
         rheology_set(&r, PARAMETERS[i].key, PARAMETERS[i].value);
+  /* a key that a new closure brings: 1 or what is allowed next to it */
+  const struct rheology_key *key;
+  while ((key = rheology_missing(&r)) != NULL)
+    if (rheology_set(&r, key->name, fmin(fmax(1, key->min), key->max)) != 0)
+      break;
   if (model->eval == NULL) r.user = product;
   ck_assert_ptr_null(rheology_missing(&r));
   ck_assert_ptr_null(rheology_prepare(&r));

@@ -1,0 +1,91 @@
+-- How far does a column run, depending on its friction?
+--
+-- Question. The friction mu(I) = mu_s + delta_mu/(I0/I + 1) has three
+-- parameters. Which of them sets the run-out of a collapsing column, and by
+-- what power?
+--
+-- Geometry. Half of a plane column of half-width L0 and height H0 = a L0 on a
+-- floor on which grains slip a little, its plane of symmetry on the left, in a
+-- square box of edge 8 L0 full of light gas and open at the top.
+--
+-- Units. Lengths in L0, times in sqrt(L0/g), the density of the grains is 1;
+-- so pressures are in rho g L0, viscosities in rho sqrt(g L0^3).
+--
+-- Numbers. a = 1.42; mu_s = 0.32, delta_mu = 0.28, I0 = 0.4, one of which is
+-- varied; 6041 grains, so a diameter d/L0 = sqrt(a/6041) = 0.0153. The paper
+-- lets the front slip over a strip of a few d ahead of it; here the floor has a
+-- slip length of 4 d.
+--
+-- Source. L. Valette et al., Sensitivity to the rheology and geometry of
+-- granular collapses by using the mu(I) rheology, Comput. Fluids 191 (2019),
+-- section 3.3, figures 7, 11, 13, section 3.5.2; the signs also in P.-Y. Lagree
+-- et al., J. Fluid Mech. 686 (2011) 378, figure 16.
+--
+-- Cost. Level 7 (16 cells to L0, about 1,300 cells): half a second a run;
+-- level 8 two seconds.
+--
+-- Expect. Less friction of any kind runs further: the run-out falls with mu_s
+-- and delta_mu and rises with I0. Valette finds run-out ~ mu_s^-1.2 (0.32 to
+-- 0.62) and I0^0.11 (0.04 to 4), and a power four times weaker for delta_mu
+-- than for mu_s; here it is mu_s^-1.13, I0^0.12, delta_mu^-0.25 (level 8:
+-- -1.10, 0.12, -0.25; level 7 with slip=0: -1.07, 0.10). More friction also
+-- means an earlier arrest, from 6.6 sqrt(L0/g) for mu_s = 0.32 to 5.2 for 0.62.
+--
+-- Try. One sweep each:
+--   tools/sweep.py examples/sensitivity.lua mu_s=0.32,0.42,0.52,0.62
+--   tools/sweep.py examples/sensitivity.lua delta_mu=0.18,0.28,0.38,0.48
+--   tools/sweep.py examples/sensitivity.lua I0=0.04,0.4,4
+-- each with level=8, or with a=10 size=32 level=9 stop=20.
+
+local a = param("a", 1.42, "aspect ratio H0/L0 of the column")
+local size = param("size", 8, "edge of the box, in L0")
+local level = param("level", 7, "finest grid: size/2^level")
+local stop = param("stop", 9, "time of the end, in sqrt(L0/g)")
+local d = param("d", math.sqrt(a / 6041), "grain diameter, in L0")
+local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
+local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
+local I0 = param("I0", 0.4, "inertial number at half that rise")
+local slip = param("slip", 4 * d, "slip length of the floor, in L0; 0: rough")
+-- the paper's 250 rho sqrt(g H0^3)
+local eta_max = param("eta_max", 250 * a^1.5,
+                      "cap on viscosity, in rho sqrt(g L0^3)")
+local tolerance = param("tolerance", 1e-4, "of the linear solvers")
+local picard = param("picard", 0, "repetitions within a step")
+
+local rho, g = 1, 1                     -- the units
+local rho_gas, eta_gas = 1e-3, 1e-4     -- rho, rho sqrt(g L0^3)
+
+return {
+  title = "Run-out of a column, mu_s = " .. mu_s .. ", delta_mu = " ..
+          delta_mu .. ", I0 = " .. I0,
+  dimension = 2,
+  domain = { size = size, level = level, level_min = 4 },
+  gravity = { 0, -g },
+
+  grains = {
+    density = rho,
+    rheology = { "mu_i", mu_s = mu_s, delta_mu = delta_mu, I0 = I0, d = d,
+                 eta_min = rho * math.sqrt(g * d^3), eta_max = eta_max },
+    shape = function(x, y) return math.min(1 - x, a - y) end,
+  },
+  gas = { density = rho_gas, rheology = { "newtonian", eta = eta_gas } },
+
+  boundary = {
+    left = "symmetry",
+    right = "no_slip",
+    bottom = slip > 0 and { "navier_slip", slip_length = slip } or "no_slip",
+    -- so that the pressure of the gas vanishes at the floor
+    top = { "outflow", pressure = -rho_gas * g * size },
+  },
+
+  adapt = { { "interface", width = 3 }, { "inside" } },
+  solver = { tolerance = tolerance, picard = picard },
+  output = { stop = stop, profile_times = { 0, 1.5, 3, 4.5 } },
+
+  expect = {
+    front = { 4.7, 5.1 },
+    height = { 0.67, 0.73 },
+    volume = { 1.419, 1.421 },
+    max_speed = { 0, 0.005 },           -- at rest
+  },
+}

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fields for output: shear rate and what the closure knows of the grains. */
+#include "talus/closure_fields.h"
+
+#include <check.h>
+
+#include "sim.h"
+#include "talus/rheology.h"
+
+Suite *closure_fields_suite(void);
+
+static double height = 0.5;
+static const double RATE = 3, PRESSURE = 40;
+
+static struct rheology lee_huang(void) {
+  struct rheology r;
+  rheology_init(&r, rheology_find("lee_huang"));
+  ck_assert_ptr_null(rheology_prepare(&r));
+  return r;
+}
+
+/* Grains in plane shear below gas that shears a hundred times faster, at one
+ * pressure. */
+static void set_shear(struct simulation *sim) {
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const double z = sim->mesh->x[i][DIM - 1];
+    sim->u[0]->v[i] = RATE * (z + 99 * fmax(z - height, 0));
+    sim->p->v[i] = PRESSURE;
+  }
+}
+
+/* Leaves next to a side see its condition, not the shear. */
+static bool is_inside(const struct simulation *sim, int32_t i) {
+  bool inside = true;
+  for (int d = 0; d < DIM; d++) {
+    inside = inside && fabs(sim->mesh->x[i][d] - 0.5) < 0.5 - sim->mesh->h[i];
+  }
+  return inside;
+}
+
+START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
+  struct params params = box_params(4);
+  params.grains.rheology = lee_huang();
+  params.shape = (struct function){below, &height};
+  if (_i) params_follow_surface(&params, 2, 1);
+  struct simulation *sim = simulation_new(&params);
+  const int n = sim->nknown;
+  double wrong_rate = 0, wrong[8] = {0}, gas = 0, cells = 0;
+  set_shear(sim);
+  closure_fields_update(sim);
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const bool grains = sim->c->v[i] > 0.5;
+    for (int k = 0; k < n && !grains; k++) gas += fabs(sim->known[k]->v[i]);
+    if (!grains || !is_inside(sim, i)) continue;
+    cells++;
+    wrong_rate = fmax(wrong_rate, fabs(sim->shear_rate->v[i] / RATE - 1));
+    for (int k = 0; k < n; k++) {
+      double exact;
+      rheology_output(&params.grains.rheology, k, 1, &RATE, &PRESSURE, &exact);
+      wrong[k] = fmax(wrong[k], fabs(sim->known[k]->v[i] - exact));
+    }
+  }
+  cells = mesh_sum(sim->mesh, cells);
+  gas = mesh_sum(sim->mesh, gas);
+  wrong_rate = mesh_max(sim->mesh, wrong_rate);
+  for (int k = 0; k < n; k++) wrong[k] = mesh_max(sim->mesh, wrong[k]);
+  simulation_destroy(sim);
+  rheology_release(&params.grains.rheology);
+  ck_assert_int_eq(n, 4);
+  ck_assert_double_gt(cells, 0);
+  ck_assert_double_eq(gas, 0);
+  /* sums of a few numbers of the size of the velocity over h */
+  ck_assert_double_le(wrong_rate, 1e-11);
+  for (int k = 0; k < n; k++) ck_assert_double_le(wrong[k], 1e-9);
+}
+END_TEST
+
+/* The mean leaves out the gas. */
+START_TEST(the_mean_shear_rate_is_that_of_the_grains) {
+  struct params params = box_params(5);
+  params.shape = (struct function){below, &height};
+  params.boundary[0].type = params.boundary[1].type = BOUNDARY_PERIODIC;
+  params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
+  struct simulation *sim = simulation_new(&params);
+  set_shear(sim);
+  const double mean = closure_fields_shear_rate(sim);
+  simulation_destroy(sim);
+  /* the floor's condition is exact for a linear velocity */
+  ck_assert_double_eq_tol(mean, RATE, 1e-10);
+}
+END_TEST
+
+Suite *closure_fields_suite(void) {
+  Suite *suite = suite_create("closure_fields");
+  TCase *tcase = tcase_create("all");
+  tcase_add_loop_test(
+      tcase, grains_have_their_shear_rate_and_state_and_gas_none, 0, 2);
+  tcase_add_test(tcase, the_mean_shear_rate_is_that_of_the_grains);
+  suite_add_tcase(suite, tcase);
+  return suite;
+}

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Friction of side walls: a plug in a narrow channel.
+ *
+ * Grains too stiff to shear fill a channel of height H = 1 on a floor without
+ * friction, inclined by alpha. Their pressure has the mean g cos(alpha) H/2,
+ * so walls a distance W apart take
+ *   F = 2 mu (g cos(alpha) H/2)/W
+ * per mass: sliding, the plug gains g sin(alpha) - F, and if that is negative
+ * it stops after u_0/(F - g sin(alpha)) and stays. */
+#include "talus/side_walls.h"
+
+#include <check.h>
+
+#include "sim.h"
+#include "transport.h"
+
+Suite *side_walls_suite(void);
+
+enum { LEVEL = 3 };
+static const double DT = 2.5e-3;
+static const double SLOPE = 0.3, START = 0.5;
+
+static double start(void *context, const double x[3]) {
+  (void)context, (void)x;
+  return START;
+}
+
+/* F is `friction` times g sin(alpha). */
+static struct params plug_params(double friction, bool moves) {
+  struct params p = box_params(LEVEL);
+  p.single_phase = true;
+  p.grains.rheology = newtonian(1e4);
+  p.gravity[0] = sin(SLOPE), p.gravity[DIM - 1] = -cos(SLOPE);
+  p.boundary[0].type = p.boundary[1].type = BOUNDARY_PERIODIC;
+  p.pressure_level_given = true;
+  p.pressure_level = 0.5 * cos(SLOPE);
+  p.side_walls.width = 0.1;
+  p.side_walls.mu = friction * tan(SLOPE) * p.side_walls.width;
+  p.tolerance_pressure = p.tolerance_viscous = 1e-10;
+  if (moves) p.velocity[0] = (struct function){start, NULL};
+  return p;
+}
+
+/* Mean of u_x, and how far the leaves are from it. */
+static double plug_speed(const struct simulation *sim, double *spread) {
+  const double mean = integral(sim->mesh, sim->u[0]->v);
+  double most = 0;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    most = fmax(most, fabs(sim->u[0]->v[i] - mean));
+  }
+  *spread = mesh_max(sim->mesh, most);
+  return mean;
+}
+
+static bool run_to(struct simulation *sim, double stop, double dt) {
+  bool good = true;
+  while (good && sim->time < stop * (1 - 1e-12)) {
+    good = step_advance(sim, fmin(dt, stop - sim->time)) == EXIT_DONE;
+  }
+  return good;
+}
+
+/* Twice as much friction as weight, and half as much. */
+START_TEST(a_plug_is_slowed_at_the_right_rate) {
+  const double friction = _i ? 0.5 : 2, weight = sin(SLOPE), stop = 1;
+  struct params params = plug_params(friction, true);
+  struct simulation *sim = simulation_new(&params);
+  double spread;
+  const bool done = run_to(sim, stop, DT);
+  const double speed = plug_speed(sim, &spread);
+  simulation_destroy(sim);
+  ck_assert(done);
+  /* of 0.2 and 0.65; friction lags by dt, and dt/2 changes this by half */
+  ck_assert_double_eq_tol(speed, START + (1 - friction) * weight * stop,
+                          1.5e-3);
+  ck_assert_double_le(spread, 1e-3);
+}
+END_TEST
+
+/* It stops on time, stays, and with it goes its energy. */
+START_TEST(a_plug_stops_and_stays) {
+  const double weight = sin(SLOPE), stop = START / weight;
+  struct params params = plug_params(2, true);
+  struct simulation *sim = simulation_new(&params);
+  double spread, late, rest;
+  bool done = run_to(sim, 0.95 * stop, DT);
+  const double before = plug_speed(sim, &spread);
+  done = done && run_to(sim, stop + 0.05, DT);
+  late = plug_speed(sim, &spread);
+  done = done && run_to(sim, stop + 2, DT);
+  rest = plug_speed(sim, &spread);
+  const double lost = sim->energy.dissipated;
+  simulation_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_gt(before, 0.01);
+  ck_assert_double_le(fabs(late), 5e-3);
+  ck_assert_double_le(fabs(rest), 10 * SIDE_WALLS_CREEP);
+  /* F times the way, which is u_0^2 / (2 (F - weight)) */
+  ck_assert_double_eq_tol(lost, 2 * weight * START * START / (2 * weight),
+                          0.02 * START * START);
+}
+END_TEST
+
+/* 10 % more friction than weight holds it from the start, though the leaves
+ * near the top, where there is no pressure, are held by those below. 10 % less
+ * lets it go at once. */
+START_TEST(a_plug_at_rest_yields_at_its_friction) {
+  const double friction = _i ? 0.9 : 1.1;
+  struct params params = plug_params(friction, false);
+  struct simulation *sim = simulation_new(&params);
+  double spread;
+  const bool done = run_to(sim, 1, DT);
+  const double speed = plug_speed(sim, &spread);
+  const double free = (1 - friction) * sin(SLOPE);
+  simulation_destroy(sim);
+  ck_assert(done);
+  if (_i)
+    ck_assert_double_eq_tol(speed, free, 0.1 * free);
+  else
+    ck_assert_double_le(fabs(speed), 10 * SIDE_WALLS_CREEP);
+}
+END_TEST
+
+Suite *side_walls_suite(void) {
+  Suite *suite = suite_create("side_walls");
+  TCase *tcase = tcase_create("plug");
+  tcase_add_loop_test(tcase, a_plug_is_slowed_at_the_right_rate, 0, 2);
+  tcase_add_test(tcase, a_plug_stops_and_stays);
+  tcase_add_loop_test(tcase, a_plug_at_rest_yields_at_its_friction, 0, 2);
+  suite_add_tcase(suite, tcase);
+  return suite;
+}
