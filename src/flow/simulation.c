@@ -268,10 +268,10 @@ static void fill_shape(const struct simulation *sim,
  * its mass, sampled on a lattice. */
 static double mixed_velocity(const struct simulation *sim,
                              const struct function *velocity, int32_t i) {
-  enum { SAMPLES = 8 }; /* along an edge */
+  enum { SAMPLES = 8, ALL = DIM == 2 ? 64 : 512 }; /* along an edge, in all */
   const struct params *params = sim->params;
   double mass = 0, momentum = 0;
-  for (int k = 0; k < (DIM == 2 ? 64 : 512); k++) {
+  for (int k = 0; k < ALL; k++) {
     const int at[] = {k % SAMPLES, k / SAMPLES % SAMPLES,
                       k / (SAMPLES * SAMPLES)};
     double x[3] = {0};

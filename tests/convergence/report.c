@@ -3,7 +3,9 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "talus/error.h"
 #include "talus/memory.h"
 
 struct report {
@@ -17,6 +19,8 @@ static void add_row(struct report *report, const char *grid, const char *norm,
                     int level, double value, double order, const char *bar,
                     bool good) {
   const char *verdict = good && isfinite(value) ? "pass" : "fail";
+  CHECK(!strchr(grid, ',') && !strchr(norm, ','), "a comma in '%s' or '%s'",
+        grid, norm);
   char text[32] = "";
   if (!isnan(order)) snprintf(text, sizeof text, "%.2f", order);
   fprintf(report->csv, "%s,%s,%s,%d,%.6g,%s,%s,%s\n", report->name, grid, norm,

@@ -308,9 +308,9 @@ START_TEST(momentum_is_conserved_in_a_periodic_box) {
 }
 END_TEST
 
-/* Crank-Nicolson sees viscosity in its predictor too, where it is explicit: in
- * a fluid 5000 times stiffer than such a term may be (eta dt / (rho h^2) = 7)
- * the uneven flow dies out, it does not grow by a tenth per step. */
+/* Crank-Nicolson sees viscosity in its predictor too, as the last step's solve
+ * has left it: in a fluid far too stiff for a term made from u^n itself (which
+ * grows where eta dt / (rho h^2) > 7) the uneven flow dies out. */
 START_TEST(a_stiff_fluid_comes_to_rest_in_its_mean_flow) {
   struct params params = periodic_params(DIM == 2 ? 5 : 4);
   params.theta = 0.5;
