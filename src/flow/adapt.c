@@ -8,6 +8,7 @@
 #include "talus/forest.h"
 #include "talus/log.h"
 #include "talus/memory.h"
+#include "talus/minmax.h"
 #include "talus/properties.h"
 #include "talus/remap.h"
 #include "talus/simulation.h"
@@ -46,7 +47,7 @@ static void spread(const struct mesh *mesh, const struct bc *bc, double *mark,
       if (node >= mesh->begin_virtual) {
         node = mesh->virtual_leaf[(node - mesh->begin_virtual) / NCHILD];
       }
-      most = fmax(most, mark[node]);
+      most = max2(most, mark[node]);
     }
     scratch[i] = most > 0;
   }
@@ -104,7 +105,7 @@ static void want_estimate(struct simulation *sim,
       for (int d = 0; d < DIM; d++) {
         const double mean = 0.5 * (v[node[stencil_face(2 * d)]] +
                                    v[node[stencil_face(2 * d + 1)]]);
-        estimate = fmax(estimate, fabs(v[i] - mean));
+        estimate = max2(estimate, fabs(v[i] - mean));
       }
     }
     const bool fine = estimate > criterion->threshold;
@@ -192,7 +193,7 @@ bool adapt_is_due(const struct simulation *sim) {
   double spare = 4; /* cells the surface may move */
   for (int k = 0; k < params->ncriteria; k++) {
     if (params->criterion[k].type == CRITERION_INTERFACE) {
-      spare = fmin(spare, fmax(params->criterion[k].width - 1, 0));
+      spare = min2(spare, max2(params->criterion[k].width - 1, 0));
     }
   }
   return sim->travel >= spare;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "talus/minmax.h"
 #include "talus/momentum.h"
 
 /* Of the generalised minmod. A square carried at an angle leaves [0, 1] by
@@ -16,8 +17,8 @@ static inline double limited(enum limiter limiter, double a, double b) {
   if (limiter == LIMITER_NONE) return mean;
   if (a * b <= 0) return 0;
   const double factor = limiter == LIMITER_MINMOD ? 1 : LIMITER_FACTOR;
-  const double most = factor * fmin(fabs(a), fabs(b));
-  return copysign(fmin(most, fabs(mean)), mean);
+  const double most = factor * min2(fabs(a), fabs(b));
+  return copysign(min2(most, fabs(mean)), mean);
 }
 
 /* Slopes along d of u_e, and its upwind change along the other axes with the

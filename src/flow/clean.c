@@ -14,6 +14,7 @@
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
+#include "talus/minmax.h"
 
 struct clean {
   uint64_t revision;
@@ -167,7 +168,7 @@ static double net_outflow(const struct mesh *mesh, const double *u_f,
 double clean_divergence(const struct mesh *mesh, const double *u_f) {
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    most = fmax(most, fabs(net_outflow(mesh, u_f, i)) / mesh->volume[i]);
+    most = max2(most, fabs(net_outflow(mesh, u_f, i)) / mesh->volume[i]);
   }
   return mesh_max(mesh, most);
 }

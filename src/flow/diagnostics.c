@@ -7,6 +7,7 @@
 #include "talus/closure_fields.h"
 #include "talus/error.h"
 #include "talus/memory.h"
+#include "talus/minmax.h"
 #include "talus/plane.h"
 #include "talus/simulation.h"
 #include "talus/vof.h"
@@ -94,7 +95,7 @@ static void measure_sums(const struct simulation *sim, const double *c,
     sum_add(&kinetic, 0.5 * rho * u2 * v);
     sum_add(&potential,
             -rho * v * leaf_potential(mesh, c, sim->params->gravity, i));
-    if (c[i] > 0.5) fastest = fmax(fastest, u2);
+    if (c[i] > 0.5) fastest = max2(fastest, u2);
   }
   diagnostics->volume = sum_total(mesh, volume);
   diagnostics->kinetic = sum_total(mesh, kinetic);

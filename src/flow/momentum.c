@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "talus/minmax.h"
 #include "talus/vof.h"
 
 void momentum_mark_band(const struct mesh *mesh, const double *c,
@@ -10,8 +11,8 @@ void momentum_mark_band(const struct mesh *mesh, const double *c,
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double low = 1, high = 0;
     for (int s = 0; s < NSTENCIL; s++) {
-      low = fmin(low, c[mesh->stencil[i][s]]);
-      high = fmax(high, c[mesh->stencil[i][s]]);
+      low = min2(low, c[mesh->stencil[i][s]]);
+      high = max2(high, c[mesh->stencil[i][s]]);
     }
     band[i] = high > VOF_EMPTY && low < 1 - VOF_EMPTY;
   }

@@ -9,6 +9,7 @@
 #include "talus/forest.h"
 #include "talus/memory.h"
 #include "talus/mesh.h"
+#include "talus/minmax.h"
 
 int outline_axis(const double gravity[DIM]) {
   int axis = DIM - 1, count = 0;
@@ -48,9 +49,9 @@ static void add_leaf(const struct mesh *mesh, const int horizontal[2],
     /* the half of a finest leaf keeps round-off out of the floor */
     double place = (lower - side) / outline->spacing;
     double width = mesh->h[i] / outline->spacing;
-    begin[k] = (int)floor(place + 0.5 * fmin(width, 1));
+    begin[k] = (int)floor(place + 0.5 * min2(width, 1));
     end[k] = begin[k] + (width > 1 ? (int)lround(width) : 1);
-    height *= fmin(width, 1);
+    height *= min2(width, 1);
   }
   for (int b = begin[1]; b < end[1]; b++)
     for (int a = begin[0]; a < end[0]; a++)
@@ -86,7 +87,7 @@ void outline_free(struct outline *outline) {
 double outline_height(const struct outline *outline) {
   double height = 0;
   for (int k = 0; k < outline->n[0] * outline->n[1]; k++)
-    height = fmax(height, outline->height[k]);
+    height = max2(height, outline->height[k]);
   return height;
 }
 
@@ -137,8 +138,8 @@ static void lean(const struct outline *o, int k, double *first, double *last,
     for (int i = 0; i < o->n[0]; i++) {
       double h = o->height[(int64_t)j * o->n[0] + i];
       int place = k == 0 ? i : j;
-      if (place == 0) *first = fmax(*first, h);
-      if (place == o->n[k] - 1) *last = fmax(*last, h);
+      if (place == 0) *first = max2(*first, h);
+      if (place == o->n[k] - 1) *last = max2(*last, h);
       mass += h;
       moment += place * h;
     }

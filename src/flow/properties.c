@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "talus/minmax.h"
 #include "talus/params.h"
 #include "talus/plane.h"
 #include "talus/vof.h"
@@ -12,7 +13,7 @@
  * the grains: round-off must not choose. */
 #define ALONG 1e-9
 
-static inline double unit_range(double c) { return fmin(fmax(c, 0), 1); }
+static inline double unit_range(double c) { return min2(max2(c, 0), 1); }
 
 /* Of leaves, not nodes: see properties.h. */
 static inline double face_fraction(const struct mesh *mesh, const double *c,
@@ -165,8 +166,8 @@ static double line_fraction(const struct mesh *mesh, int d, int32_t f, int side,
   }
   const double reach = (side ? -0.5 : 0.5) * (coarse ? 0.5 : 1);
   const double at_face = at_node + reach * grains->normal[d][leaf];
-  if (fmax(fabs(at_node), fabs(at_face)) < ALONG) return 0.5;
-  at_node = heavy ? fmin(at_node, 0) : fmax(at_node, 0);
+  if (max2(fabs(at_node), fabs(at_face)) < ALONG) return 0.5;
+  at_node = heavy ? min2(at_node, 0) : max2(at_node, 0);
   if (at_node <= 0 && at_face <= 0) return 1;
   if (at_node > 0 && at_face > 0) return 0;
   return (at_node <= 0 ? -at_node : -at_face) / fabs(at_node - at_face);
@@ -292,8 +293,8 @@ static void share_stress(double time, const struct rheology *const phase[2],
   }
   for (int32_t i = 0; i < m->n; i++) {
     const double theta = m->theta[i];
-    const double eta[2] = {fmax(m->eta[0][i], DBL_MIN),
-                           fmax(m->eta[1][i], DBL_MIN)};
+    const double eta[2] = {max2(m->eta[0][i], DBL_MIN),
+                           max2(m->eta[1][i], DBL_MIN)};
     eta_f[m->face[i]] = 1 / (theta / eta[0] + (1 - theta) / eta[1]);
   }
   m->n = 0;

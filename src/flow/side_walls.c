@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/side_walls.h"
+#include "talus/minmax.h"
 
 #include <math.h>
 
@@ -14,11 +15,11 @@ void side_walls_drag(const struct mesh *mesh, const struct side_walls *walls,
                      const struct side_walls_state *state, double *drag) {
   const double factor = 2 * walls->mu / walls->width;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double c = fmin(fmax(state->c[i], 0), 1);
-    const double force = factor * c * fmax(state->p[i], 0); /* N/m^3 */
+    const double c = min2(max2(state->c[i], 0), 1);
+    const double force = factor * c * max2(state->p[i], 0); /* N/m^3 */
     const double slides = speed_of(state->u, i) - dt * force / state->rho[i];
-    const double speed = fmax(slides, speed_of(state->u_old, i));
-    drag[i] = force / fmax(speed, creep);
+    const double speed = max2(slides, speed_of(state->u_old, i));
+    drag[i] = force / max2(speed, creep);
   }
 }
 

@@ -19,6 +19,7 @@
 #include "talus/clean.h"
 #include "talus/error.h"
 #include "talus/log.h"
+#include "talus/minmax.h"
 #include "talus/momentum.h"
 #include "talus/projection.h"
 #include "talus/properties.h"
@@ -77,7 +78,7 @@ static double boundary_speed(const struct simulation *sim, bool per_leaf) {
     for (int e = 0; e < DIM && patch >= 0; e++) {
       const struct bc *bc = &sim->u[e]->bc[patch];
       if (bc->type != BC_DIRICHLET) continue;
-      most = fmax(most, fabs(bc->value) / (per_leaf ? mesh->face_h[f] : 1));
+      most = max2(most, fabs(bc->value) / (per_leaf ? mesh->face_h[f] : 1));
     }
   }
   return most;
@@ -93,7 +94,7 @@ static double cfl_bound(const struct simulation *sim) {
     for (int f = 0; f < NFACE; f++) {
       sum += fabs(sim->u_f->v[mesh->cell_face[i][f]]);
     }
-    rate = fmax(rate, 0.5 * sum / mesh->h[i]);
+    rate = max2(rate, 0.5 * sum / mesh->h[i]);
   }
   rate = mesh_max(mesh, rate);
   return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
@@ -107,7 +108,7 @@ static double acceleration_bound(const struct simulation *sim) {
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     for (int d = 0; d < DIM && sim->c->v[i] > 0.5; d++) {
-      most = fmax(most, fabs(sim->g[d]->v[i]) / mesh->h[i]);
+      most = max2(most, fabs(sim->g[d]->v[i]) / mesh->h[i]);
     }
   }
   most = mesh_max(mesh, most);
@@ -120,13 +121,13 @@ static double acceleration_bound(const struct simulation *sim) {
 static double choose_dt(const struct simulation *sim, double dt_max,
                         double *dt_c) {
   const double bound = cfl_bound(sim);
-  double dt = fmin(fmin(dt_max, sim->params->dt_max),
-                   fmin(bound, acceleration_bound(sim)));
+  double dt = min2(min2(dt_max, sim->params->dt_max),
+                   min2(bound, acceleration_bound(sim)));
   if (sim->dt > 0) {
-    dt = fmin(dt, DT_GROWTH * sim->dt);
-    dt = fmin(dt, fmax(2 * bound - sim->dt, DT_SHRINK * bound));
+    dt = min2(dt, DT_GROWTH * sim->dt);
+    dt = min2(dt, max2(2 * bound - sim->dt, DT_SHRINK * bound));
   }
-  *dt_c = fmin(0.5 * (sim->dt + dt), bound);
+  *dt_c = min2(0.5 * (sim->dt + dt), bound);
   return dt;
 }
 
@@ -355,13 +356,13 @@ static void viscous_rhs(struct simulation *sim, double dt,
 
 /* Largest speed, or what gravity would make of rest in this step. */
 static double velocity_scale(const struct simulation *sim, double dt) {
-  double most = fmax(1e-300, boundary_speed(sim, false));
+  double most = max2(1e-300, boundary_speed(sim, false));
   for (int d = 0; d < DIM; d++) {
-    most = fmax(most, dt * fabs(sim->params->gravity[d]));
+    most = max2(most, dt * fabs(sim->params->gravity[d]));
   }
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-      most = fmax(most, fabs(sim->u[e]->v[i]));
+      most = max2(most, fabs(sim->u[e]->v[i]));
     }
   }
   return mesh_max(sim->mesh, most);
@@ -379,11 +380,11 @@ static const double *mass_with_walls(struct simulation *sim, double dt) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       u[i] = sim->u[e]->v[i] + dt * (sim->g[e]->v[i] + sim->pull[e]->v[i]);
     }
-    gravity = fmax(gravity, fabs(params->gravity[e]));
+    gravity = max2(gravity, fabs(params->gravity[e]));
     state.u[e] = u, state.u_old[e] = sim->u_old[e]->v;
   }
   const double creep =
-      fmax(SIDE_WALLS_CREEP * sqrt(gravity * params->size), 1e-300);
+      max2(SIDE_WALLS_CREEP * sqrt(gravity * params->size), 1e-300);
   side_walls_drag(mesh, &params->side_walls, dt, creep, &state, sim->drag->v);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     mass[i] = sim->rho->v[i] + dt * sim->drag->v[i];
@@ -458,7 +459,7 @@ static void measure_repetition(struct simulation *sim, int k) {
   double *last = sim->u_half->v, change = 0;
   if (sim->params->picard == 0) return;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
-    change = fmax(change, fabs(sim->u_f->v[f] - last[f]));
+    change = max2(change, fabs(sim->u_f->v[f] - last[f]));
     last[f] = sim->u_f->v[f];
   }
   if (k == 0) return;
@@ -546,7 +547,7 @@ static void add_travel(struct simulation *sim, double dt) {
     if (!everywhere && !vof_is_cut(sim->c->v[i])) continue;
     for (int f = 0; f < NFACE; f++) {
       const double u = fabs(sim->u_f->v[mesh->cell_face[i][f]]);
-      travel = fmax(travel, u * dt / mesh->h[i]);
+      travel = max2(travel, u * dt / mesh->h[i]);
     }
   }
   sim->travel += mesh_max(mesh, travel);
@@ -566,7 +567,7 @@ static bool is_finite(const struct simulation *sim) {
 static bool is_solved(const struct solve_stats *stats, double tolerance) {
   return stats->status == SOLVE_CONVERGED ||
          (stats->status == SOLVE_STALLED &&
-          stats->residual_after <= fmax(STALL_SLACK * tolerance, STALL_FLOOR));
+          stats->residual_after <= max2(STALL_SLACK * tolerance, STALL_FLOOR));
 }
 
 static bool has_failed(const struct simulation *sim) {
@@ -669,13 +670,13 @@ static struct solve_stats static_pressure(struct simulation *sim) {
   velocities(sim->u_old, rest), velocities(sim->g, g);
   for (int d = 0; d < DIM; d++) {
     memset(rest[d], 0, (size_t)sim->mesh->ncells * sizeof(double));
-    size = fmax(size, fabs(sim->params->gravity[d]));
+    size = max2(size, fabs(sim->params->gravity[d]));
   }
   /* 1e-13 of the divergence gravity makes at a density jump, but not below
    * the round-off of p / (rho h^2) */
   const double cells = exp2(sim->params->level_max);
   projection.tolerance =
-      size * cells / sim->params->size * fmax(1e-13, 1e-16 * cells);
+      size * cells / sim->params->size * max2(1e-13, 1e-16 * cells);
   projection_face_velocity(&projection, 1, rest, sim->face[1]->v);
   struct solve_stats stats =
       projection_project(&projection, 1, sim->face[1]->v, sim->p->v);

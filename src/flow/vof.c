@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "talus/error.h"
+#include "talus/minmax.h"
 #include "talus/plane.h"
 
 void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
@@ -12,7 +13,7 @@ void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
   bool known[NSTENCIL];
   for (int s = 0; s < NSTENCIL; s++) {
     const int32_t node = mesh->stencil[leaf][s];
-    stencil[s] = fmin(fmax(c[node], 0), 1);
+    stencil[s] = min2(max2(c[node], 0), 1);
     known[s] = node < mesh->begin_virtual;
   }
   plane_normal(stencil, known, n);
@@ -70,7 +71,7 @@ void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
     double fraction;
     if (leaf < 0) { /* carried in through a boundary */
       const int32_t *node = mesh->face_node[f];
-      fraction = fmin(fmax(0.5 * (c[node[0]] + c[node[1]]), 0), 1);
+      fraction = min2(max2(0.5 * (c[node[0]] + c[node[1]]), 0), 1);
     } else if (!vof_is_cut(c[leaf]) || u == 0) {
       fraction = c[leaf];
     } else {

@@ -10,16 +10,14 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "talus/minmax.h"
+
 /* The smaller side of a cut, reflected and sorted: plane.h, above eq. (2). */
 struct cut {
   double m[DIM]; /* |n_d|/|n|_1, ascending */
   int axis[DIM]; /* m[i] belongs to axis[i] */
   double norm;   /* |n|_1 */
 };
-
-static inline double min2(double a, double b) { return a < b ? a : b; }
-
-static inline double max2(double a, double b) { return a > b ? a : b; }
 
 static inline double positive(double a) { return a > 0. ? a : 0.; }
 

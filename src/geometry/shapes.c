@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "talus/minmax.h"
 #include "talus/plane.h"
 
 enum { NVERTEX = 1 << DIM, NLATTICE = DIM == 2 ? 9 : 27 };
@@ -34,7 +35,7 @@ static inline int side(int v, int d) { return (v >> d & 1) ? 1 : -1; }
 static double variation(const struct piece *p) {
   double largest = 0.;
   for (int v = 0; v < NVERTEX; v++)
-    largest = fmax(largest, fabs(p->vertex[v] - p->centre));
+    largest = max2(largest, fabs(p->vertex[v] - p->centre));
   return largest;
 }
 
@@ -61,7 +62,7 @@ static double cut_piece(const struct piece *p) {
   for (int v = 0; v < NVERTEX; v++) {
     double linear = p->centre;
     for (int d = 0; d < DIM; d++) linear -= 0.5 * side(v, d) * n[d];
-    residual = fmax(residual, fabs(p->vertex[v] - linear));
+    residual = max2(residual, fabs(p->vertex[v] - linear));
   }
   /* A corner of a box that lies on a vertex, up to round-off in x, must not be
    * taken for a slanted plane. A true plane is always cut. */
@@ -142,7 +143,7 @@ double shape_box(const double lo[DIM], const double hi[DIM],
                  const double x[DIM]) {
   double nearest = INFINITY;
   for (int d = 0; d < DIM; d++)
-    nearest = fmin(nearest, fmin(x[d] - lo[d], hi[d] - x[d]));
+    nearest = min2(nearest, min2(x[d] - lo[d], hi[d] - x[d]));
   return nearest;
 }
 

@@ -7,6 +7,7 @@
 
 #include "levels.h"
 #include "talus/memory.h"
+#include "talus/minmax.h"
 
 /* Coefficients jump at a node whose sides differ by this factor. */
 #define ROUGH_JUMP 10
@@ -18,8 +19,8 @@ enum { ROUGH_LAYERS = 10, ROUGH_SWEEPS = 20 };
 static bool is_rough(const double w[NFACE]) {
   double least = HUGE_VAL, most = 0;
   for (int f = 0; f < NFACE; f++) {
-    if (w[f] > 0) least = fmin(least, w[f]);
-    most = fmax(most, w[f]);
+    if (w[f] > 0) least = min2(least, w[f]);
+    most = max2(most, w[f]);
   }
   return most > ROUGH_JUMP * least;
 }
@@ -66,7 +67,7 @@ static double largest(const struct hierarchy *h, const double *scale,
   for (int c = 0; c < h->nparts; c++) {
     for (int32_t i = 0; i < n; i++) {
       const double size = fabs(r[(int64_t)c * n + i]);
-      most = fmax(most, scale ? scale[i] * size : size);
+      most = max2(most, scale ? scale[i] * size : size);
     }
   }
   return mesh_max(h->mesh, most);
