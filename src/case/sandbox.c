@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sandbox.h"
 
-#include <fenv.h>
 #include <lauxlib.h>
 #include <lualib.h>
 #include <stdbool.h>
@@ -217,13 +216,12 @@ static const char *message_of(struct sandbox *sandbox, int status) {
 const char *sandbox_call(struct sandbox *sandbox, int narguments,
                          int nresults) {
   /* Debug builds trap 1/0, which Lua code may well write. */
-  fenv_t environment;
-  feholdexcept(&environment);
+  const bool trapping = base_trap_floating_point(false);
   sandbox->budget = SANDBOX_INSTRUCTIONS;
   sandbox->limited = true;
   int status = lua_pcall(sandbox->L, narguments, nresults, 0);
   sandbox->limited = false;
-  fesetenv(&environment);
+  base_trap_floating_point(trapping);
   return status == LUA_OK ? NULL : message_of(sandbox, status);
 }
 

@@ -249,14 +249,16 @@ void simulation_destroy(struct simulation *sim) {
   mem_free(sim);
 }
 
-/* Fractions of a shape. Coarse leaves are divided more often, so that what
- * is DEEPEST levels finer is not missed. */
+/* Fractions of a shape. Where its surface may pass, leaves of the finest level
+ * are halved `halvings` times, coarser ones more often, so that what is DEEPEST
+ * levels finer than they are is not missed. */
 static void fill_shape(const struct simulation *sim,
-                       const struct function *shape, struct field *field) {
-  enum { DEEPEST = 6, SURFACE = 3 };
+                       const struct function *shape, int halvings,
+                       struct field *field) {
+  enum { DEEPEST = 6 };
   const struct mesh *mesh = sim->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    int depth = sim->params->level_max - mesh->level[i] + SURFACE;
+    int depth = sim->params->level_max - mesh->level[i] + halvings;
     if (depth > DEEPEST) depth = DEEPEST;
     field->v[i] = shape->eval ? shape_fraction(shape->eval, shape->context,
                                                mesh->x[i], mesh->h[i], depth)
@@ -287,12 +289,12 @@ static double mixed_velocity(const struct simulation *sim,
   return momentum / mass;
 }
 
-static void fill_state(struct simulation *sim) {
+static void fill_state(struct simulation *sim, int halvings) {
   const struct params *params = sim->params;
   const struct mesh *mesh = sim->mesh;
-  fill_shape(sim, &params->shape, sim->c);
+  fill_shape(sim, &params->shape, halvings, sim->c);
   for (int k = 0; k < params->ntracers; k++) {
-    fill_shape(sim, &params->tracer[k].shape, sim->tracer[k]);
+    fill_shape(sim, &params->tracer[k].shape, halvings, sim->tracer[k]);
   }
   for (int d = 0; d < DIM; d++) {
     const struct function *function = &params->velocity[d];
@@ -330,17 +332,19 @@ static void fill_face_velocity(struct simulation *sim) {
 }
 
 struct simulation *simulation_new(const struct params *params) {
+  enum { HALVINGS = 3 };
   struct forest_layout layout;
   simulation_layout(params, &layout);
   const int level =
       params->ncriteria > 0 ? params->level_min : params->level_max;
   struct simulation *sim =
       simulation_new_on(params, forest_new(MPI_COMM_WORLD, &layout, level));
-  fill_state(sim);
+  /* the grid from where the surface is, then the fractions in earnest */
   for (int k = 0; k <= 2 * params->level_max && params->ncriteria > 0; k++) {
+    fill_state(sim, 0);
     if (!adapt_grid(sim)) break;
-    fill_state(sim);
   }
+  fill_state(sim, HALVINGS);
   fill_face_velocity(sim);
   step_start(sim);
   return sim;
