@@ -4,6 +4,7 @@
 #ifndef TALUS_TESTS_SYSTEMS_H
 #define TALUS_TESTS_SYSTEMS_H
 
+#include "report.h"
 #include "runs.h"
 #include "talus/hierarchy.h"
 
@@ -105,6 +106,31 @@ static inline double largest_size(const struct mesh *mesh, const double *v) {
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) most = fmax(most, fabs(v[i]));
   return mesh_max(mesh, most);
+}
+
+/* Error of the solution of a problem on one grid. */
+typedef struct norms grid_solver(const void *problem, enum grid grid,
+                                 int level);
+
+/* Errors on levels 4 to 8 of every grid; orders that L2 and max must reach. */
+static inline void report_grids(struct report *report, const char *name,
+                                const char *field, grid_solver *solve,
+                                const void *problem, double order_l2,
+                                double order_most) {
+  enum { FIRST = 4, N = 5, LENGTH = 64 };
+  char row[LENGTH], of_l2[LENGTH], of_most[LENGTH];
+  snprintf(of_l2, LENGTH, "L2 of %s", field);
+  snprintf(of_most, LENGTH, "max of %s", field);
+  for (int grid = 0; grid < NGRIDS; grid++) {
+    double l2[N], most[N];
+    for (int l = 0; l < N; l++) {
+      const struct norms norms = solve(problem, (enum grid)grid, FIRST + l);
+      l2[l] = norms.l2, most[l] = norms.most;
+    }
+    snprintf(row, LENGTH, "%s %s", name, grid_name[grid]);
+    report_errors(report, row, of_l2, FIRST, N, l2, NULL, order_l2);
+    report_errors(report, row, of_most, FIRST, N, most, NULL, order_most);
+  }
 }
 
 #endif

@@ -13,7 +13,7 @@
 #include "systems.h"
 #include "talus/poisson.h"
 
-enum { FIRST = 4, N = 5, MOST = 60 };
+enum { MOST = 60 };
 
 struct problem {
   const char *name;
@@ -91,8 +91,8 @@ static struct norms error_of(const struct problem *problem,
   return norms;
 }
 
-static struct norms solve(const struct problem *problem, enum grid grid,
-                          int level) {
+static struct norms solve(const void *context, enum grid grid, int level) {
+  const struct problem *problem = context;
   struct forest *forest = grid_make(grid, problem->periodic, level);
   struct mesh *mesh = mesh_new(forest);
   struct hierarchy *hierarchy = hierarchy_new(mesh);
@@ -121,17 +121,7 @@ static void run(struct report *report) {
   struct problem problem[4];
   problems(problem);
   for (int k = 0; k < 4; k++) {
-    for (int grid = 0; grid < NGRIDS; grid++) {
-      char name[64];
-      double l2[N], most[N];
-      for (int l = 0; l < N; l++) {
-        const struct norms norms = solve(&problem[k], grid, FIRST + l);
-        l2[l] = norms.l2, most[l] = norms.most;
-      }
-      snprintf(name, sizeof name, "%s %s", problem[k].name, grid_name[grid]);
-      report_errors(report, name, "L2 of p", FIRST, N, l2, NULL, 1.9);
-      report_errors(report, name, "max of p", FIRST, N, most, NULL, 1.9);
-    }
+    report_grids(report, problem[k].name, "p", solve, &problem[k], 1.9, 1.9);
   }
 }
 

@@ -13,7 +13,7 @@
 #include "systems.h"
 #include "talus/viscous.h"
 
-enum { FIRST = 4, N = 5, MOST = 100 };
+enum { MOST = 100 };
 
 struct problem {
   const char *name;
@@ -88,8 +88,8 @@ static void system_end(struct system *s) {
 }
 
 /* L2 of the error of the velocity vector, and its largest component. */
-static struct norms solve(const struct problem *problem, enum grid grid,
-                          int level) {
+static struct norms solve(const void *context, enum grid grid, int level) {
+  const struct problem *problem = context;
   struct system s = {0};
   const struct bc *bc[DIM];
   double scale = 0;
@@ -120,17 +120,7 @@ static void run(struct report *report) {
   struct problem problem[2];
   problems(problem);
   for (int k = 0; k < 2; k++) {
-    for (int grid = 0; grid < NGRIDS; grid++) {
-      char name[64];
-      double l2[N], most[N];
-      for (int l = 0; l < N; l++) {
-        const struct norms norms = solve(&problem[k], grid, FIRST + l);
-        l2[l] = norms.l2, most[l] = norms.most;
-      }
-      snprintf(name, sizeof name, "%s %s", problem[k].name, grid_name[grid]);
-      report_errors(report, name, "L2 of u", FIRST, N, l2, NULL, 1.9);
-      report_errors(report, name, "max of u", FIRST, N, most, NULL, 0);
-    }
+    report_grids(report, problem[k].name, "u", solve, &problem[k], 1.9, 0);
   }
 }
 
