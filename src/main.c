@@ -10,6 +10,7 @@
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
+#include "talus/rheology.h"
 #include "talus/run.h"
 #include "talus/spelling.h"
 
@@ -182,6 +183,7 @@ int main(int argc, char *argv[]) {
   }
   const struct command *command = find_command(argv[1]);
   if (command->parallel) base_begin(&argc, &argv);
+  rheology_begin();
   int status = command->run(argc - 2, argv + 2);
   if (command->parallel) base_end();
   return status;

@@ -34,14 +34,14 @@ SEES = {
 SEES["main"] = set(SEES)
 
 # Public headers without a .c of their stem: stem -> owner.
-HEADER_ONLY = {"params": "params", "solve": "solver"}
+HEADER_ONLY = {"minmax": "base", "params": "params", "solve": "solver"}
 
 # Foreign headers: pattern -> folders or files that may include them.
 FOREIGN = {
     r"(p4est|p8est|sc)(_\w+)?\.h": {"tree"},
     r"(hdf5|H5\w*)\.h": {"io"},
     r"(lua|lualib|lauxlib)\w*\.h": {"case"},
-    r"gsl/.*": {"src/rheology/lee_huang_direct.c"},
+    r"gsl/.*": {"src/rheology/roots.c"},
     r"check\.h": set(),
 }
 

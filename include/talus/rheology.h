@@ -28,11 +28,9 @@
  * At rest a yielded closure with p > 0 gives eta_max (2), or a finite value
  * proportional to 1/gamma_r (3, 4).
  *
- * Closures (sources in their files): newtonian, bingham, power_law,
- * herschel_bulkley, cross, bagnold, coulomb, mu_i, mu_i_linear, mu_i_quadratic,
- * mu_i_power, mu_i_well_posed, lee_huang, and user, a function of the case. To
- * add one: a file in src/rheology/ and a line in src/rheology/models.h. Nothing
- * else needs to know.
+ * `talus rheology` lists the closures, with their sources; `user` is a function
+ * of the case. To add one: a file in src/rheology/ and a line in
+ * src/rheology/models.h (README.md). Nothing else needs to know.
  *
  * A closure of mu(I), mu = tau/p a function of I = gamma d/sqrt(p/rho) alone,
  * is well posed where
@@ -138,6 +136,10 @@ struct rheology {
   rheology_user_function *user; /* of the closure `user` */
   void *context;                /* borrowed */
 };
+
+/* Lets errors of GSL, by which closures find roots, end the program as FATAL
+ * does. Call once at the start; without it they end in abort(). */
+void rheology_begin(void);
 
 /* The closure of this name, NULL if there is none. */
 const struct rheology_model *rheology_find(const char *name);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steady shear of the closure lee_huang by finding roots: slow and plain. */
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_roots.h>
 #include <math.h>
+#include <stddef.h>
 
+#include "roots.h"
 #include "talus/lee_huang.h"
 
 static const double PI = 3.14159265358979323846;
@@ -69,28 +69,6 @@ static double transition_residual(double nu, void *context) {
   return lee_huang_kinetic(b->param, nu).pressure * I * I - 1;
 }
 
-/* Root of f between low and high; the end nearer to one where there is no
- * change of sign or low > high, as rounding may have it. */
-static double find_root(double (*f)(double, void *), struct balance *balance,
-                        double low, double high) {
-  gsl_function function = {f, balance};
-  const double f_low = f(low, balance), f_high = f(high, balance);
-  if (low >= high || f_low == 0 || f_high == 0 || (f_low > 0) == (f_high > 0))
-    return fabs(f_low) < fabs(f_high) ? low : high;
-  gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-  gsl_root_fsolver_set(solver, &function, low, high);
-  double root = low;
-  for (int i = 0; i < 200 && high - low > 4e-16 * high; i++) {
-    if (gsl_root_fsolver_iterate(solver) != GSL_SUCCESS) break;
-    root = gsl_root_fsolver_root(solver);
-    low = gsl_root_fsolver_x_lower(solver);
-    high = gsl_root_fsolver_x_upper(solver);
-    if (f(root, balance) == 0) break;
-  }
-  gsl_root_fsolver_free(solver);
-  return root;
-}
-
 /* Where the kinetic pressure at given I is least between low and high, by
  * golden section: there I is largest. */
 static double find_last(const double *param, double low, double high) {
@@ -134,8 +112,8 @@ const char *lee_huang_find(const double *param, struct lee_huang_marks *marks) {
   if (nu <= NU_LEAST)
     return "grains never fly: the dilatancy law (a, delta, nu_0) and e_eff "
            "do not fit";
-  marks->nu_tran = find_root(transition_residual, &balance, nu,
-                             fmin(nu + step, nu_0 * (1 - 1e-15)));
+  marks->nu_tran = root_between(transition_residual, &balance, nu,
+                                fmin(nu + step, nu_0 * (1 - 1e-15)));
   if (marks->nu_tran >= nu_min)
     return "nu_min must be above the solid fraction at which contact ends; "
            "raise nu_min or a";
@@ -160,10 +138,10 @@ struct lee_huang_shear lee_huang_direct(const double *param,
   const bool contact = I < marks->I_tran;
   const double lowest =
       I < marks->I_m ? param[LEE_HUANG_NU_MIN] : marks->nu_tran;
-  const double nu = contact
-                        ? find_root(dense_residual, &balance, lowest, highest)
-                        : find_root(inertial_residual, &balance, marks->nu_last,
-                                    marks->nu_tran);
+  const double nu =
+      contact ? root_between(dense_residual, &balance, lowest, highest)
+              : root_between(inertial_residual, &balance, marks->nu_last,
+                             marks->nu_tran);
   const struct lee_huang_kinetic kinetic = lee_huang_kinetic(param, nu);
   const double pE = contact ? 1 - kinetic.pressure * I * I : 0;
   return (struct lee_huang_shear){

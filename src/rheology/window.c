@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "roots.h"
 #include "talus/rheology.h"
 
 /* Decades that are searched, in steps of which none hides a window. */
@@ -23,27 +24,21 @@ static double log_mu(const struct rheology *r, double scale, double I) {
   return log(eta * rate / p);
 }
 
-/* C(I); scale = gamma/I at p = 1. */
-static double condition(const struct rheology *r, double scale, double I) {
-  const double h = 1e-4, mu = exp(log_mu(r, scale, I));
-  const double slope =
-      (log_mu(r, scale, I * exp(h)) - log_mu(r, scale, I * exp(-h))) / (2 * h);
+/* A closure as C(I) sees it. */
+struct neutral {
+  const struct rheology *r;
+  double scale; /* gamma/I at p = 1 */
+};
+
+/* C at ln I */
+static double condition(double log_I, void *context) {
+  const struct neutral *n = (const struct neutral *)context;
+  const double h = 1e-4, mu = exp(log_mu(n->r, n->scale, exp(log_I)));
+  const double slope = (log_mu(n->r, n->scale, exp(log_I + h)) -
+                        log_mu(n->r, n->scale, exp(log_I - h))) /
+                       (2 * h);
   const double factor = 1 - 0.5 * slope;
   return 4 * slope * (slope - 1) + mu * mu * factor * factor;
-}
-
-/* The root between two inertial numbers, by bisection in the logarithm. */
-static double neutral(const struct rheology *r, double scale, double low,
-                      double high) {
-  const bool well = condition(r, scale, low) <= 0;
-  while (high / low > 1 + 1e-12) {
-    const double middle = sqrt(low * high);
-    if ((condition(r, scale, middle) <= 0) == well)
-      low = middle;
-    else
-      high = middle;
-  }
-  return sqrt(low * high);
 }
 
 bool rheology_window(const struct rheology *r, double window[2]) {
@@ -53,14 +48,14 @@ bool rheology_window(const struct rheology *r, double window[2]) {
   open.eta_min = open.cohesion = 0;
   open.eta_max = 1e30;
   open.regularisation = RHEOLOGY_CLIP;
-  const double scale = 1 / (value(r, "d") * sqrt(value(r, "rho")));
+  struct neutral neutral = {&open, 1 / (value(r, "d") * sqrt(value(r, "rho")))};
   window[1] = INFINITY;
   for (int i = FIRST * PER_DECADE; i <= LAST * PER_DECADE; i++) {
-    const double I = pow(10, (double)i / PER_DECADE);
-    const double before = pow(10, (i - 1.) / PER_DECADE);
-    if ((condition(&open, scale, I) <= 0) == inside) continue;
+    const double step = log(10) / PER_DECADE, log_I = i * step;
+    if ((condition(log_I, &neutral) <= 0) == inside) continue;
     const bool first = i == FIRST * PER_DECADE;
-    window[inside] = first ? 0 : neutral(&open, scale, before, I);
+    window[inside] =
+        first ? 0 : exp(root_between(condition, &neutral, log_I - step, log_I));
     if (inside) return true;
     inside = true;
   }

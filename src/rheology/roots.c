@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "roots.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_roots.h>
+#include <math.h>
+
+#include "talus/error.h"
+#include "talus/rheology.h"
+
+static void end_with_words(const char *reason, const char *file, int line,
+                           int code) {
+  FATAL("GSL: %s (%s, %s:%d)", reason, gsl_strerror(code), file, line);
+}
+
+void rheology_begin(void) { gsl_set_error_handler(end_with_words); }
+
+double root_between(double (*f)(double, void *), void *context, double low,
+                    double high) {
+  gsl_function function = {f, context};
+  const double f_low = f(low, context), f_high = f(high, context);
+  if (low >= high || f_low == 0 || f_high == 0 || (f_low > 0) == (f_high > 0))
+    return fabs(f_low) < fabs(f_high) ? low : high;
+  gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+  gsl_root_fsolver_set(solver, &function, low, high);
+  double root = low;
+  for (int i = 0; i < 200 && high - low > 4e-16 * fabs(high); i++) {
+    gsl_root_fsolver_iterate(solver);
+    root = gsl_root_fsolver_root(solver);
+    low = gsl_root_fsolver_x_lower(solver);
+    high = gsl_root_fsolver_x_upper(solver);
+    if (f(root, context) == 0) break;
+  }
+  gsl_root_fsolver_free(solver);
+  return root;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Roots of a function of one variable, by Brent's method as GSL has it. */
+#ifndef TALUS_RHEOLOGY_ROOTS_H
+#define TALUS_RHEOLOGY_ROOTS_H
+
+/*
+ * Root of f(x, context) between low and high, to the last bits; the end with
+ * the smaller |f| where f does not change sign or low >= high, as rounding may
+ * have it. What GSL objects to, as a function that is not finite on the way,
+ * ends in its error handler (rheology_begin).
+ */
+double root_between(double (*f)(double, void *), void *context, double low,
+                    double high);
+
+#endif
