@@ -55,7 +55,9 @@ struct simulation {
   struct field *u_f;    /* face velocity, m/s */
   struct field *p;      /* pressure, Pa */
   struct field *g[DIM]; /* gravity minus pressure gradient over density */
-  struct field *viscous_g[DIM]; /* what viscosity added in the last step */
+  struct field *viscous_g[DIM]; /* what viscosity added in the last step,
+                                 * without the friction of side walls */
+  struct field *drag;           /* of side walls (side_walls.h); NULL: none */
 
   /* Properties and scratch, remade every step */
   struct field *rho;                 /* leaves */
@@ -68,8 +70,6 @@ struct simulation {
   struct field *c_old;
   struct field *u_old[DIM];    /* u^n while u is being advanced */
   struct field *u_half;        /* u_f^{n+1/2} */
-  struct field *drag;          /* of side walls (side_walls.h); NULL: none */
-  struct field *pull[DIM];     /* viscous acceleration, with side walls only */
   struct field *cell[3 * DIM]; /* scratch */
   struct field *face[DIM + 2]; /* scratch */
 

@@ -50,14 +50,12 @@ void initial_read_velocity(struct case_file *file, const struct key *key) {
  * behind. */
 static bool is_taken(const char *name) {
   static const char *const TAKEN[] = {
-      "fraction",   "pressure",      "density",   "viscosity",
-      "velocity",   "frozen",        "plane",     "band",
-      "c_old",      "cells",         "vertices",  "level",
-      "parameters", "state",         "levels",    "fields",
-      "partition",  "acceleration_", "velocity_", "normal_",
-      "old_",       "cell_",         "face_",     "shear_rate",
-      "drag",       "pull_",         "nu",        "T",
-      "pE_over_p"};
+      "fraction", "pressure",  "density",       "viscosity",  "velocity",
+      "frozen",   "plane",     "band",          "c_old",      "cells",
+      "vertices", "level",     "parameters",    "state",      "levels",
+      "fields",   "partition", "acceleration_", "velocity_",  "normal_",
+      "old_",     "cell_",     "face_",         "shear_rate", "drag",
+      "nu",       "T",         "pE_over_p"};
   for (size_t i = 0; i < sizeof TAKEN / sizeof *TAKEN; i++) {
     size_t n = strlen(TAKEN[i]);
     bool prefix = TAKEN[i][n - 1] == '_';

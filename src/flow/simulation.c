@@ -176,13 +176,8 @@ static void add_known(struct simulation *sim) {
 }
 
 static void add_walls(struct simulation *sim) {
-  static const char *const pull[] = {"pull_x", "pull_y", "pull_z"};
   sim->drag = add_cell(sim, "drag", "kg/m^3/s", "drag of the side walls",
-                       REMAP_NONE, false);
-  for (int d = 0; d < DIM; d++) {
-    sim->pull[d] = add_cell(sim, pull[d], "m/s^2", "viscous acceleration",
-                            REMAP_AVERAGE, false);
-  }
+                       REMAP_AVERAGE, false);
 }
 
 static void add_scratch(struct simulation *sim) {

@@ -297,16 +297,19 @@ static struct solve_stats make_solenoidal(struct simulation *sim, double dt,
   return stats;
 }
 
-/* What the predictor sees besides inertia: g, and with Crank-Nicolson the
- * viscous acceleration of the last step, without which this one is of first
+/* What the predictor sees besides inertia: g, and with Crank-Nicolson what
+ * viscosity and walls did in the last step, without which this one is of first
  * order in time. It is bounded, as an implicit solve has made it. Filled. */
 static void predictor_acceleration(struct simulation *sim, double *g[DIM]) {
   const bool viscous = sim->params->theta < 1;
+  const double *drag = sim->drag ? sim->drag->v : NULL;
   struct field *const *sum = viscous ? &sim->cell[2 * DIM] : sim->g;
   velocities(sum, g);
   for (int e = 0; e < DIM && viscous; e++) {
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-      g[e][i] = sim->g[e]->v[i] + sim->viscous_g[e]->v[i];
+      const double u = sim->u_old[e]->v[i];
+      g[e][i] = sim->g[e]->v[i] + sim->viscous_g[e]->v[i] -
+                (drag ? drag[i] * u / sim->rho->v[i] : 0);
     }
   }
   field_fill_many(sim->mesh, DIM, sum);
@@ -378,7 +381,7 @@ static const double *mass_with_walls(struct simulation *sim, double dt) {
   for (int e = 0; e < DIM; e++) {
     double *u = sim->cell[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      u[i] = sim->u[e]->v[i] + dt * (sim->g[e]->v[i] + sim->pull[e]->v[i]);
+      u[i] = sim->u[e]->v[i] + dt * (sim->g[e]->v[i] + sim->viscous_g[e]->v[i]);
     }
     gravity = max2(gravity, fabs(params->gravity[e]));
     state.u[e] = u, state.u_old[e] = sim->u_old[e]->v;
@@ -392,27 +395,17 @@ static const double *mass_with_walls(struct simulation *sim, double dt) {
   return mass;
 }
 
-/* What the viscous step has added besides the friction of the walls, as an
- * acceleration: rhs and mass as they were in it. */
-static void keep_pull(struct simulation *sim, double dt, const double *mass) {
-  for (int e = 0; e < DIM && sim->drag; e++) {
-    const double *u = sim->u[e]->v, *rhs = sim->cell[e]->v;
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-      sim->pull[e]->v[i] = (mass[i] * u[i] - rhs[i]) /
-                           (sim->params->theta * dt * sim->rho->v[i]);
-    }
-  }
-}
-
-/* Of u* + dt g + dt (viscous acceleration of the last step), which is the
- * first guess, the solve makes the new velocity and acceleration. */
+/* Of u* + dt g + dt (viscous acceleration of the last step), which less the
+ * friction of the walls is the first guess, the solve makes the new velocity
+ * and acceleration. */
 static void diffuse_momentum(struct simulation *sim, double dt) {
   const struct mesh *mesh = sim->mesh;
   const struct params *params = sim->params;
   double *u[DIM], *rhs[DIM];
   const struct bc *bc[DIM];
   velocities(sim->u, u);
-  const double *mass = sim->drag ? mass_with_walls(sim, dt) : sim->rho->v;
+  const double *rho = sim->rho->v;
+  const double *mass = sim->drag ? mass_with_walls(sim, dt) : rho;
   for (int e = 0; e < DIM; e++) {
     rhs[e] = sim->cell[e]->v;
     bc[e] = sim->u[e]->bc;
@@ -422,18 +415,19 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
     double *inviscid = sim->cell[2 * DIM + e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       inviscid[i] = u[e][i] + dt * sim->g[e]->v[i];
-      u[e][i] = inviscid[i] + dt * sim->viscous_g[e]->v[i];
+      u[e][i] =
+          (inviscid[i] + dt * sim->viscous_g[e]->v[i]) * (rho[i] / mass[i]);
     }
   }
   sim->scale = velocity_scale(sim, dt);
   sim->viscous = viscous_solve(
       mesh, sim->hierarchy, mass, sim->eta_f->v, params->theta * dt, rhs, bc,
       params->tolerance_viscous * sim->scale, params->max_iterations, u);
-  keep_pull(sim, dt, mass);
   for (int e = 0; e < DIM; e++) {
     const double *inviscid = sim->cell[2 * DIM + e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      sim->viscous_g[e]->v[i] = (u[e][i] - inviscid[i]) / dt;
+      const double lost = u[e][i] * (mass[i] / rho[i] - 1); /* to the walls */
+      sim->viscous_g[e]->v[i] = (u[e][i] - inviscid[i] + lost) / dt;
       u[e][i] -= dt * sim->g[e]->v[i];
     }
   }

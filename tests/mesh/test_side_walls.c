@@ -103,10 +103,13 @@ END_TEST
 
 /* 10 % more friction than weight holds it from the start, though the leaves
  * near the top, where there is no pressure, are held by those below. 10 % less
- * lets it go at once. */
+ * lets it go at once. With implicit steps and with Crank-Nicolson, whose
+ * explicit half lets it creep at 3e-4 sqrt(g H). */
 START_TEST(a_plug_at_rest_yields_at_its_friction) {
-  const double friction = _i ? 0.9 : 1.1;
+  const bool yields = _i & 1;
+  const double friction = yields ? 0.9 : 1.1;
   struct params params = plug_params(friction, false);
+  params.theta = _i & 2 ? 0.5 : 1;
   struct simulation *sim = simulation_new(&params);
   double spread;
   const bool done = run_to(sim, 1, DT);
@@ -114,10 +117,10 @@ START_TEST(a_plug_at_rest_yields_at_its_friction) {
   const double free = (1 - friction) * sin(SLOPE);
   simulation_destroy(sim);
   ck_assert(done);
-  if (_i)
+  if (yields)
     ck_assert_double_eq_tol(speed, free, 0.1 * free);
   else
-    ck_assert_double_le(fabs(speed), 10 * SIDE_WALLS_CREEP);
+    ck_assert_double_le(fabs(speed), _i & 2 ? 1e-3 : 10 * SIDE_WALLS_CREEP);
 }
 END_TEST
 
@@ -126,7 +129,7 @@ Suite *side_walls_suite(void) {
   TCase *tcase = tcase_create("plug");
   tcase_add_loop_test(tcase, a_plug_is_slowed_at_the_right_rate, 0, 2);
   tcase_add_test(tcase, a_plug_stops_and_stays);
-  tcase_add_loop_test(tcase, a_plug_at_rest_yields_at_its_friction, 0, 2);
+  tcase_add_loop_test(tcase, a_plug_at_rest_yields_at_its_friction, 0, 4);
   suite_add_tcase(suite, tcase);
   return suite;
 }
