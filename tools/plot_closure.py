@@ -9,7 +9,9 @@
 One curve for each argument, as `talus rheology ... --csv` prints it: solid
 lines where contact carries 1 % of the pressure or more (state below 3), dotted
 from there, with a dot at the first such row. --dilatancy adds 1/nu = 1/nu_0 + a
-I^delta, dashed. Figure 1 of lee_huang_chiew_2015 is
+I^delta, dashed. What is drawn is written beside the picture, fig1.csv for
+fig1.png: a row for each point with the number of its curve. Figure 1 of
+lee_huang_chiew_2015 is
 
   tools/plot_closure.py fig1.png --linear --dilatancy 0.6 0.28 0.58 \\
     "lee_huang p=1000 eta_S=0.38 d=5e-4 e_eff=0.46" \\
@@ -18,6 +20,7 @@ I^delta, dashed. Figure 1 of lee_huang_chiew_2015 is
 """
 import argparse
 import csv
+import pathlib
 import subprocess
 import sys
 
@@ -49,6 +52,19 @@ def draw(axes, curve, name, colour, label):
     if len(inertial):
         axes.plot(I[kink:], y[kink:], ":", color=colour)
         axes.plot(I[kink], y[kink], "o", color=colour, markersize=4)
+
+
+def write_data(path, curves, arguments):
+    """All curves in one table; the arguments as lines of comment."""
+    names = list(curves[0])
+    with open(path, "w", newline="", encoding="utf-8") as f:
+        for k, argument in enumerate(arguments):
+            f.write(f"# curve {k}: {argument}\n")
+        writer = csv.writer(f)
+        writer.writerow(["curve", *names])
+        for k, curve in enumerate(curves):
+            for row in zip(*(curve[name] for name in names)):
+                writer.writerow([k, *(f"{x:.6g}" for x in row)])
 
 
 def shared_words(arguments):
@@ -99,6 +115,8 @@ def main():
                              if w in shared))
     figure.tight_layout()
     figure.savefig(options.picture, dpi=120)
+    write_data(pathlib.Path(options.picture).with_suffix(".csv"), curves,
+               options.curves)
 
 
 if __name__ == "__main__":

@@ -9,9 +9,12 @@ One panel for the snapshot nearest to each TIME (default: the last), times in
 units of SCALE: a number, or a parameter of the case (default: tau_c if the case
 has it, else 1). Of the field `state`, which the closure lee_huang gives, the
 colours are those of its states and the part of the grains in each is printed;
-of any other (nu, T, pE_over_p, shear_rate, ...) a scale.
+of any other (nu, T, pE_over_p, shear_rate, ...) a scale. What is drawn is
+written beside the picture, state.csv for state.png: time, centre, edges and
+value of each leaf of grains.
 """
 import argparse
+import csv
 import pathlib
 import sys
 
@@ -108,6 +111,19 @@ def make_figure(snapshots, scale, field):
     return fig
 
 
+def write_data(path, snapshots, field):
+    """The leaves of grains in all panels, in the units of the run."""
+    with open(path, "w", newline="", encoding="utf-8") as f:
+        writer = csv.writer(f)
+        writer.writerow(["time", "x", "y", "width", "height", field])
+        for s in snapshots:
+            grains = s.fields[run_data.FRACTION] > 0.5
+            low, high = s.low[grains], s.high[grains]
+            for row in zip(*(low + high).T / 2, *(high - low).T,
+                           s.fields[field][grains]):
+                writer.writerow(f"{x:.6g}" for x in (s.time, *row))
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
@@ -132,6 +148,7 @@ def main():
             print_parts(snapshot, scale)
     path = options.output or options.directory / f"{options.field}.png"
     make_figure(snapshots, scale, options.field).savefig(path, dpi=150)
+    write_data(path.with_suffix(".csv"), snapshots, options.field)
     print(path)
 
 

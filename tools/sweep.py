@@ -137,6 +137,7 @@ def plot_panels(path, name, runs):
     axes[0, 0].set_ylim(bottom=0)
     axes[0, 0].legend(fontsize=7, frameon=False, loc="upper right", ncol=2)
     axes[-1, 0].set_xlabel("x")
+    fig.supylabel("height", fontsize="medium")
     fig.savefig(path, dpi=150)
     plt.close(fig)
 
