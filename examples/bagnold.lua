@@ -54,6 +54,7 @@ local delta_mu = param("delta_mu", 0.26, "rise of friction at large I")
 local I0 = param("I0", 0.3, "inertial number at half that rise")
 local eta_max = param("eta_max", 1e4, "cap on viscosity, in rho sqrt(g H^3)")
 local tolerance = param("tolerance", 1e-8, "of the linear solvers")
+local picard = param("picard", 0, "repetitions within a step")
 
 local rho, g, H = 1, 1, 1               -- the units
 
@@ -89,7 +90,7 @@ return {
   },
 
   adapt = refined > 0 and { { "position", level = finest } } or nil,
-  solver = { tolerance = tolerance },
+  solver = { tolerance = tolerance, picard = picard },
   output = { stop = stop, series_every = 10 },
 
   expect = {

@@ -9,18 +9,19 @@
  * all repetitions, and of their solves the worst decides whether the step is
  * good. What they do, tolerance 1e-4, change relative to the largest speed:
  *
- *   collapse, a = 1.42, level 8 in a box of 8 L0 (median over the steps)
+ *   collapse, a = 1.42: examples/sensitivity.lua level=8 slip=0 picard=...
  *     repetition              1       2       3       4       6       8
- *     change             1.4e-2  2.5e-3  1.2e-3  6.2e-4  2.2e-4  9.7e-5
+ *     change (median)    1.6e-2  2.8e-3  1.5e-3  7.6e-4  2.3e-4  8.2e-5
  *   repetitions               0       1       2       4       8
- *     front at t = 3      3.287   3.288   3.289   3.290   3.290
- *     final front         4.044   4.012   4.010   4.011   4.011
- *     time                    1     1.6     2.4     2.9       5
+ *     front at t = 3      3.415   3.415   3.416   3.417   3.418
+ *     final front         4.283   4.246   4.244   4.244   4.245
+ *     time                    1     1.4     1.8     2.6       4
  *
  * One is worth its price where the front is wanted to 1 %, more are not. Where
- * a flow sets off from rest the viscosity lags most: Bagnold's flow of
- * examples/bagnold.lua is, at t = 5 sqrt(H/g), at 0.261, 0.320, 0.334, 0.344
- * with 0, 1, 2, 4, and at the same steady speed with all (2.060 at t = 200).
+ * a flow sets off from rest the viscosity lags most: Bagnold's flow,
+ * examples/bagnold.lua picard=..., is at t = 5 sqrt(H/g) at 0.261, 0.320,
+ * 0.334, 0.344 with 0, 1, 2, 4, and at the same steady speed with all (2.060
+ * at t = 200).
  */
 #ifndef TALUS_STEP_H
 #define TALUS_STEP_H
