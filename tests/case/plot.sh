@@ -70,6 +70,20 @@ if "$build/talus" plot nowhere 2> output; then
   exit 1
 fi
 
+# Closures: a picture, and beside it the curves as they were printed.
+"$python" "$root/tools/plot_closure.py" curves.png mu_i "lee_huang p=1000" \
+  --talus "$build/talus"
+[ "$(wc -c < curves.png)" -gt 5000 ] || { echo "curves.png is small"; exit 1; }
+for curve in "0 mu_i" "1 lee_huang p=1000"; do
+  number=${curve%% *}
+  # shellcheck disable=SC2086
+  rows=$("$build/talus" rheology ${curve#* } --csv | tail -n +2 | wc -l)
+  [ "$(grep -c "^$number," curves.csv)" -eq "$rows" ] || {
+    echo "curves.csv: curve $number has not $rows rows"
+    exit 1
+  }
+done
+
 # Outlines: known areas, then the run itself.
 cat > compare.py << 'PYTHON'
 import sys

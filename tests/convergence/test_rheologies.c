@@ -4,11 +4,14 @@
  * exponents and lengths of
  *   [lagree_staron_popinet_2011], section 4.1, figures 14 and 15: which fluids
  *     keep spreading, which keep a corner, how long constant friction will do;
+ *     eq. 3.3: run-out 2.2 a;
  *   [valette_2019], section 3.3: run-out ~ mu_s^-1.2, I0^0.11;
  *   [lee_huang_chiew_2015], table II: case 2, run-out 20.7 cm, height 6.48 cm,
  *     and their changes with eta_S and e_eff;
- * and the creep of the heap that eta_max lets stand, of which
- * rho g H^2/(2 eta_max) is left if nothing else moves.
+ * and the motion of the heap that eta_max lets stand, of which
+ * rho g H^2/(2 eta_max) is left if nothing else moves. Where the papers show a
+ * picture the bar is what its words mean on a grid (a cell), to grains (a
+ * diameter) or by the theory of the law.
  * Levels are log2 of the cells along the box of the example. */
 #include "report.h"
 #include "runs.h"
@@ -28,74 +31,111 @@ static bool measure_at(struct example *example, double time,
   return good;
 }
 
-/* Largest rise of an outline on the way out, over its height: 0 for a heap. */
+/* Of examples/rheologies.lua at level 7. */
+static const double kCell = 8. / 128, kGrain = 0.0219;
+
+/* Largest rise of an outline on the way out: 0 for a heap. */
 static double largest_rise(const struct diagnostics *d) {
   double lowest = HUGE_VAL, rise = 0;
   for (int k = 0; k < d->outline.n[0]; k++) {
     lowest = fmin(lowest, d->outline.height[k]);
     rise = fmax(rise, d->outline.height[k] - lowest);
   }
-  return rise / d->height;
+  return rise;
 }
 
-static double outline_difference(const struct diagnostics *a,
-                                 const struct diagnostics *b) {
-  double apart = 0, area = 0;
-  for (int k = 0; k < a->outline.n[0]; k++) {
+/* Height of an outline at a distance behind its front. */
+static double height_behind_front(const struct diagnostics *d,
+                                  double distance) {
+  const int k = (int)((d->front - distance) / d->outline.spacing);
+  return d->outline.height[k];
+}
+
+/* Mean distance of two outlines over the longer one. */
+static double outline_distance(const struct diagnostics *a,
+                               const struct diagnostics *b) {
+  double apart = 0;
+  for (int k = 0; k < a->outline.n[0]; k++)
     apart += fabs(a->outline.height[k] - b->outline.height[k]);
-    area += a->outline.height[k];
-  }
-  return apart / area;
+  return apart * a->outline.spacing / fmax(a->front, b->front);
 }
 
-/* Which fluids spread on, between 6 and 8 sqrt(H0/g), and which have a corner
- * at 4. */
+/* "Never stops": a thin layer of fluid spreads as t^n, n = 1/5 if its viscosity
+ * is constant, 2/7 if it is Bagnold's (h L = const, dL/dt ~ L^-5/2), and faster
+ * while it is thick. "Comes to rest": moves by less than a cell. Both from 6 to
+ * 8 sqrt(H0/g), when nothing that can stop has not. */
+static void report_spreading(struct report *report, const char *law,
+                             const struct diagnostics d[2]) {
+  if (strcmp(law, "newtonian") == 0 || strcmp(law, "bagnold") == 0) {
+    const double n = strcmp(law, "bagnold") == 0 ? 2. / 7 : 1. / 5;
+    report_at_least(report, law, "exponent of front over thin layer's", 7,
+                    log(d[1].front / d[0].front) / log(8. / 6) / n, 0.95);
+  } else {
+    report_at_most(report, law, "cells the front moves from 6 to 8", 7,
+                   fabs(d[1].front - d[0].front) / kCell, 1);
+  }
+}
+
+/* "A solid-like corner": at 1 sqrt(H0/g) the outline of bingham rises outward
+ * by more than a cell, those of grains by less than a quarter, as an outline is
+ * second-order. "A rounded front, very different from the sharp angle": at
+ * rest, at x = L0/4 behind it, bingham is as high as its yield stress can hold,
+ * sqrt(2 tau_y x/(rho g)), within a fifth, and grains are not steeper than
+ * their largest friction, mu_s + delta_mu = 0.6. */
+static void report_shape(struct report *report, const char *law,
+                         const struct diagnostics *early,
+                         const struct diagnostics *late) {
+  const double x = 0.25, held = sqrt(2 * 0.1 * x),
+               height = height_behind_front(late, x);
+  const double rise = largest_rise(early) / kCell;
+  if (strcmp(law, "bingham") == 0) {
+    report_at_least(report, law, "cells the outline rises at 1", 7, rise, 1);
+    report_at_least(report, law, "height near front over yield's", 7,
+                    height / held, 0.8);
+  } else if (strcmp(law, "mu_i") == 0 || strcmp(law, "coulomb") == 0) {
+    report_at_most(report, law, "cells the outline rises at 1", 7, rise, 0.25);
+    report_at_most(report, law, "slope of front", 7, height / x, 0.6);
+  }
+}
+
 static void report_laws(struct report *report) {
   static const char *const law[] = {"mu_i", "coulomb", "bingham", "newtonian",
                                     "bagnold"};
-  const double unit = sqrt(kAspect);
+  static const double time[] = {1, 6, 8};
   for (int k = 0; k < 5; k++) {
     struct diagnostics d[3];
     struct example example = example_new("rheologies", "law=%s", law[k]);
-    bool good = measure_at(&example, 4 * unit, &d[0]);
-    good = good && measure_at(&example, 6 * unit, &d[1]);
-    good = good && measure_at(&example, 8 * unit, &d[2]);
-    const double more = good ? ratio_of(d[2].front, d[1].front) : NAN;
-    const double rise = good ? largest_rise(&d[0]) : NAN;
-    if (k < 3)
-      report_at_most(report, law[k], "growth of front from 6 to 8", 7, more,
-                     0.01);
-    else
-      report_at_least(report, law[k], "growth of front from 6 to 8", 7, more,
-                      0.04);
-    if (k == 2)
-      report_at_least(report, law[k], "rise of outline at 4", 7, rise, 0.04);
-    else if (k < 2)
-      report_at_most(report, law[k], "rise of outline at 4", 7, rise, 0.01);
-    else
-      report_value(report, law[k], "rise of outline at 4", 7, rise);
-    for (int i = 0; i < 3 && good; i++) diagnostics_free(&d[i]);
+    for (int i = 0; i < 3; i++) {
+      const bool good = measure_at(&example, time[i] * sqrt(kAspect), &d[i]);
+      CHECK(good, "%s stops at %g", law[k], example.sim->time);
+    }
+    report_spreading(report, law[k], &d[1]);
+    report_shape(report, law[k], &d[0], &d[2]);
+    for (int i = 0; i < 3; i++) diagnostics_free(&d[i]);
     example_destroy(&example);
   }
 }
 
-/* Constant friction will do until 1.5 sqrt(H0/g), not at 4. */
+/* "Good agreement until 1.5 sqrt(H0/g), then it degrades": outlines of grains
+ * are known to a diameter (the best fit of the paper misses them by 1.36). */
 static void report_constant_friction(struct report *report) {
-  static const double time[] = {1.5, 4};
+  static const double time[] = {1, 1.5, 4};
   struct example example[2] = {example_new("rheologies", "law=mu_i"),
                                example_new("rheologies", "law=coulomb")};
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < 3; k++) {
     struct diagnostics d[2];
     bool good = true;
+    char norm[32];
     for (int i = 0; i < 2; i++) {
       const double stop = time[k] * sqrt(kAspect);
       good = measure_at(&example[i], stop, &d[i]) && good;
     }
-    const double apart = good ? outline_difference(&d[0], &d[1]) : NAN;
-    if (k == 0)
-      report_at_most(report, "coulomb", "from mu_i at 1.5", 7, apart, 0.03);
+    const double apart = good ? outline_distance(&d[0], &d[1]) : NAN;
+    snprintf(norm, sizeof norm, "d from mu_i at %g", time[k]);
+    if (k < 2)
+      report_at_most(report, "coulomb", norm, 7, apart / kGrain, 1);
     else
-      report_at_least(report, "coulomb", "from mu_i at 4", 7, apart, 0.08);
+      report_at_least(report, "coulomb", norm, 7, apart / kGrain, 1);
     for (int i = 0; i < 2; i++) diagnostics_free(&d[i]);
   }
   for (int i = 0; i < 2; i++) example_destroy(&example[i]);
@@ -131,6 +171,9 @@ static void sweep(const char *name, const char *more, double stop, double base,
   }
 }
 
+/* The paper lets grains stick to the floor but for a strip of a few d ahead of
+ * the front, on which they and the air slip; our floor has a slip length of as
+ * much. Without any the exponent is -1.07, -1.00, -0.97 at levels 7, 8, 9. */
 static void report_sensitivity(struct report *report) {
   static const double mu_s[] = {0.32, 0.42, 0.52, 0.62};
   static const double delta_mu[] = {0.18, 0.28, 0.38, 0.48};
@@ -146,6 +189,11 @@ static void report_sensitivity(struct report *report) {
                    fabs(n_mu + 1.2), 0.2);
     report_at_least(report, "mu_s", "exponent of height", level,
                     exponent(4, mu_s, high), 0.1);
+    char rough[32];
+    snprintf(rough, sizeof rough, "level=%d slip=0", level);
+    sweep("sensitivity", rough, 9, 1, "mu_s", 4, mu_s, run, high);
+    report_value(report, "mu_s", "exponent without slip", level,
+                 exponent(4, mu_s, run));
     sweep("sensitivity", more, 9, 1, "delta_mu", 4, delta_mu, run, high);
     report_at_most(report, "delta_mu", "exponent of run-out", level,
                    exponent(4, delta_mu, run), -0.1);
@@ -157,6 +205,34 @@ static void report_sensitivity(struct report *report) {
     report_at_least(report, "I0", "rise of run-out", level,
                     fmin(run[1] - run[0], run[2] - run[1]), 0.1);
   }
+}
+
+/* Of Gerris with mu(I), eq. 3.3: run-out = 2.2 a, a fit over a < 7. */
+static void report_aspect_ratios(struct report *report) {
+  static const double a[] = {1.42, 2.4, 4};
+  double run[3], high[3];
+  sweep("column", "d=0.02 size=16 level=8", 12, 1, "a", 3, a, run, high);
+  for (int k = 0; k < 3; k++) {
+    char name[32];
+    snprintf(name, sizeof name, "a = %g", a[k]);
+    report_at_most(report, name, "run-out off 2.2 a", 8,
+                   fabs(ratio_of(run[k], 2.2 * a[k])), 0.1);
+  }
+}
+
+/* Steady friction of the closure is between eta_S = 0.42 and mu_tran = 0.539:
+ * its run-out must lie between those of constant friction of these two values,
+ * and the latter is the least that any such closure can have. */
+static void report_friction_limits(struct report *report, double runout) {
+  static const double friction[] = {0.42, 0.539};
+  double run[2], high[2];
+  sweep("lee_huang_column", "level=8", 7 * sqrt(0.1344 / 9.81), 0.056,
+        "friction", 2, friction, run, high);
+  report_value(report, "friction 0.539", "run-out in cm", 8, 5.6 * run[1]);
+  report_at_least(report, "friction 0.42", "run-out less the closure's in cm",
+                  8, 5.6 * (run[0] - runout), 0);
+  report_at_most(report, "friction 0.539", "run-out less the closure's in cm",
+                 8, 5.6 * (run[1] - runout), 0);
 }
 
 /* Of table II, in the order of the paper's changes: the run-out falls with
@@ -175,6 +251,7 @@ static void report_glass_beads(struct report *report) {
                  fabs(ratio_of(run[1] * length, 0.207)), 0.15);
   report_at_most(report, "glass beads", "height off table II", 8,
                  fabs(ratio_of(high[1] * length, 0.0648)), 0.1);
+  report_friction_limits(report, run[1]);
   report_at_most(report, "glass beads", "eta_S: change of run-out", 8,
                  fmax(run[1] - run[0], run[2] - run[1]) / run[1], -0.05);
   report_at_least(report, "glass beads", "eta_S: change of height", 8,
@@ -187,29 +264,54 @@ static void report_glass_beads(struct report *report) {
                  fmax(high[1] - high[0], high[2] - high[1]) / high[1], 0);
 }
 
-/* Speeds between t = 8 and 12, in sqrt(g L0). */
+/* Part of the grains that is in cells, not mostly gas, faster than a speed. */
+static double faster_part(const struct simulation *sim, double speed) {
+  const struct mesh *mesh = sim->mesh;
+  double sum[2] = {0};
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double grains = sim->c->v[i] * mesh->volume[i];
+    const double u = hypot(sim->u[0]->v[i], sim->u[1]->v[i]);
+    sum[0] += u > speed && sim->c->v[i] > 0.5 ? grains : 0;
+    sum[1] += grains;
+  }
+  return sum[0] / sum[1];
+}
+
+/* The deposit between t = 8 and 12, speeds in sqrt(g L0): the root of their
+ * mean square, the rate at which its outline moves, and how much of it is
+ * faster than the bar. What is, is the cell at the tip of the front, or two,
+ * whatever eta_max: it comes to rest as exp(-t), since mu - mu_s of so slow a
+ * flow is proportional to its rate. */
 static void report_creep(struct report *report) {
   static const double eta_max[] = {423, 1e4}, bar[] = {5e-3, 1e-3};
   static const char *const name[] = {"eta_max 250 H^1.5", "eta_max 1e4"};
   for (int k = 0; k < 2; k++) {
     for (int level = 7; level <= 9; level++) {
-      double fastest = 0, mean = 0;
+      double fastest = 0, mean = 0, part = 0;
+      struct diagnostics first, d;
       struct example example =
           example_new("column", "a=%g d=0.0219 size=8 level=%d eta_max=%g",
                       kAspect, level, eta_max[k]);
-      bool good = run_to(example.sim, 8);
+      bool good = measure_at(&example, 8, &first);
       while (good && example.sim->time < 12) {
-        struct diagnostics d;
         good = measure_at(&example, example.sim->time + 0.05, &d);
         fastest = fmax(fastest, d.max_speed);
         mean = fmax(mean, sqrt(2 * d.kinetic / d.volume));
-        diagnostics_free(&d);
+        part = fmax(part, faster_part(example.sim, bar[k]));
+        if (good && example.sim->time < 12) diagnostics_free(&d);
       }
-      example_destroy(&example);
       report_at_most(report, name[k], "rms speed of the heap", level,
                      good ? mean : NAN, bar[k]);
-      report_at_most(report, name[k], "speed of the fastest grains", level,
+      report_at_most(report, name[k], "speed of its outline", level,
+                     outline_distance(&first, &d) / 4, bar[k]);
+      report_value(report, name[k], "speed of its front", level,
+                   (d.front - first.front) / 4);
+      report_at_most(report, name[k], "part of it that is faster", level, part,
+                     1e-3);
+      report_at_most(report, name[k], "speed of the fastest cell", level,
                      good ? fastest : NAN, bar[k]);
+      diagnostics_free(&first), diagnostics_free(&d);
+      example_destroy(&example);
     }
   }
 }
@@ -217,6 +319,7 @@ static void report_creep(struct report *report) {
 static void run(struct report *report) {
   report_laws(report);
   report_constant_friction(report);
+  report_aspect_ratios(report);
   report_sensitivity(report);
   report_glass_beads(report);
   report_creep(report);
