@@ -65,6 +65,7 @@ struct simulation {
   struct field *eta_f, *alpha_f;     /* face viscosity, 1/density */
   struct field *gravity_f;           /* face gravity, balanced (properties.h) */
   struct field *normal[DIM], *plane; /* planes of cut leaves */
+  bool planes_hold;                  /* they are those of c as it is */
   struct field *frozen;              /* cc of vof.h, or scratch */
   struct field *band;                /* leaves whose momentum rides with c */
   struct field *c_old;

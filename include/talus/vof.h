@@ -39,10 +39,12 @@ void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
                double n[DIM], double *alpha);
 
 /* Fluxes F of c through the faces of axis d; flux [nfaces_all] is valid on
- * all of them afterwards. u_f [nfaces_all], m/s; c filled. Collective. */
+ * all of them afterwards. u_f [nfaces_all], m/s; c filled. open
+ * [MESH_MAX_PATCHES]: patches through which only gas flows in, for the grains
+ * at them are not mirrored there; NULL: none. Collective. */
 void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
-              const double *c, double *const normal[DIM], const double *alpha,
-              double *flux);
+              const bool *open, const double *c, double *const normal[DIM],
+              const double *alpha, double *flux);
 
 /* cc [nleaves] = 1 where c > 1/2. */
 void vof_freeze(const struct mesh *mesh, const double *c, double *cc);

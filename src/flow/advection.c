@@ -46,18 +46,33 @@ static void cell_terms(const struct mesh *mesh, int d, const double *u_e,
   }
 }
 
-/* The formula of the header at one face, for the sign of u_n. */
-static inline double face_value(const struct mesh *mesh, int32_t f, double u_n,
-                                double dt, const double *u_e, const double *g_e,
-                                const double *slope, const double *transverse) {
-  const int upwind = u_n > 0 ? 0 : 1;
+/* What all components take over at a face, for the sign of u_n. */
+struct upwind {
+  const int32_t *node; /* on both sides */
+  int32_t from, leaf;  /* upwind node and leaf; leaf -1: a boundary */
+  double reach, ratio; /* half edges from the node to where the value comes
+                          from; edge of the face by that of the leaf */
+};
+
+static inline struct upwind upwind_of(const struct mesh *mesh, int32_t f,
+                                      double u_n, double dt) {
+  const int side = u_n > 0 ? 0 : 1;
   const int32_t *node = mesh->face_node[f];
-  const int32_t leaf = mesh->face_leaf[f][upwind];
-  if (leaf < 0) return 0.5 * (u_e[node[0]] + u_e[node[1]]);
-  const double h = mesh->face_h[f];
-  const double reach = (upwind ? -1 : 1) - u_n * dt / h;
-  return u_e[node[upwind]] + 0.5 * reach * slope[leaf] * (h / mesh->h[leaf]) -
-         0.5 * dt * transverse[leaf] +
+  struct upwind up = {node, node[side], mesh->face_leaf[f][side], 0, 0};
+  if (up.leaf < 0) return up;
+  up.reach = (side ? -1 : 1) - u_n * dt / mesh->face_h[f];
+  up.ratio = mesh->face_h[f] / mesh->h[up.leaf];
+  return up;
+}
+
+/* The formula of the header at one face. */
+static inline double face_value(const struct upwind *up, double dt,
+                                const double *u_e, const double *g_e,
+                                const double *slope, const double *transverse) {
+  const int32_t *node = up->node;
+  if (up->leaf < 0) return 0.5 * (u_e[node[0]] + u_e[node[1]]);
+  return u_e[up->from] + 0.5 * up->reach * slope[up->leaf] * up->ratio -
+         0.5 * dt * transverse[up->leaf] +
          0.25 * dt * (g_e[node[0]] + g_e[node[1]]);
 }
 
@@ -75,7 +90,8 @@ void advection_predict(const struct mesh *mesh, double dt, double *const u[DIM],
       if (patch >= 0 && closed[patch]) {
         u_f[f] = u_n; /* the wall's own normal velocity */
       } else {
-        u_f[f] = face_value(mesh, f, u_n, dt, u[d], g[d], v[0], v[1]);
+        const struct upwind up = upwind_of(mesh, f, u_n, dt);
+        u_f[f] = face_value(&up, dt, u[d], g[d], v[0], v[1]);
       }
     }
   }
@@ -96,11 +112,11 @@ static void axis_fluxes(const struct mesh *mesh, int d, double dt,
     const bool skip = band && momentum_face_in_band(mesh, band, f);
     const double u_n = skip ? 0 : u_f[f];
     work->volume[f] = u_n;
+    const struct upwind up = upwind_of(mesh, f, u_n, dt);
     for (int e = 0; e < DIM; e++) {
-      work->flux[e][f] = u_n == 0
-                             ? 0
-                             : u_n * face_value(mesh, f, u_n, dt, u[e], g[e],
-                                                v[2 * e], v[2 * e + 1]);
+      work->flux[e][f] = u_n == 0 ? 0
+                                  : u_n * face_value(&up, dt, u[e], g[e],
+                                                     v[2 * e], v[2 * e + 1]);
     }
   }
 }

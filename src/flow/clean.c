@@ -28,6 +28,9 @@ struct clean {
   int trees[DIM];
   uint64_t tree_span;
   int32_t *tree_number; /* [ntrees] curve number of the tree at a place */
+  uint8_t *owned;    /* [nleaves] bit f: the leaf changes face f of its own */
+  int32_t *boundary; /* [nboundary] faces on patches */
+  int32_t nboundary;
   int32_t nslots;
   double *shared;          /* [nslots NCHILD] */
   double *net;             /* [nleaves + ninner] outflow, m^DIM/s */
@@ -135,12 +138,38 @@ static void number_trees(struct clean *clean, const struct mesh *mesh) {
                           MPI_INT32_T, MPI_MAX, mesh->comm));
 }
 
+static void mark_owned(struct clean *clean, const struct mesh *mesh) {
+  clean->owned = MEM_NEW(uint8_t, mesh->nleaves);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int f = 0; f < NFACE; f++) {
+      const int32_t face = mesh->cell_face[i][f];
+      if (face < mesh->nfaces && mesh->face_owner[face] == i &&
+          mesh->face_patch[face] < 0) {
+        clean->owned[i] |= (uint8_t)(1 << f);
+      }
+    }
+  }
+}
+
+static void list_boundary(struct clean *clean, const struct mesh *mesh) {
+  int32_t n = 0;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    clean->nboundary += mesh->face_patch[f] >= 0;
+  }
+  clean->boundary = MEM_NEW(int32_t, clean->nboundary);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    if (mesh->face_patch[f] >= 0) clean->boundary[n++] = f;
+  }
+}
+
 struct clean *clean_new(const struct mesh *mesh) {
   struct clean *clean = MEM_NEW(struct clean, 1);
   clean->revision = mesh->revision;
   number_trees(clean, mesh);
   link_nodes(clean, mesh);
   mark_straddling(clean, mesh);
+  mark_owned(clean, mesh);
+  list_boundary(clean, mesh);
   const size_t n = (size_t)mesh->nleaves + (size_t)clean->ninner;
   clean->net = MEM_NEW(double, n);
   clean->change = mem_alloc((size_t)clean->ninner, sizeof *clean->change);
@@ -149,10 +178,13 @@ struct clean *clean_new(const struct mesh *mesh) {
 
 void clean_destroy(struct clean *clean) {
   if (!clean) return;
-  void *owned[] = {clean->child,    clean->level,       clean->key,
-                   clean->slot,     clean->root,        clean->tree_number,
-                   clean->shared,   clean->net,         clean->change,
-                   clean->tree_net, clean->tree_change, clean};
+  void *owned[] = {clean->child,       clean->level,
+                   clean->key,         clean->slot,
+                   clean->root,        clean->tree_number,
+                   clean->owned,       clean->boundary,
+                   clean->shared,      clean->net,
+                   clean->change,      clean->tree_net,
+                   clean->tree_change, clean};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
 }
 
@@ -173,34 +205,30 @@ double clean_divergence(const struct mesh *mesh, const double *u_f) {
   return mesh_max(mesh, most);
 }
 
-/* Let the total excess out through the open boundary faces. */
-static void balance_boundaries(const struct mesh *mesh, const bool *open,
-                               double *u_f) {
+/* Let the total excess of the leaves out through the open boundary faces. */
+static void balance_boundaries(struct clean *clean, const struct mesh *mesh,
+                               const bool *open, double *u_f) {
   double sum[2] = {0}; /* net outflow, open area */
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    sum[0] += net_outflow(mesh, u_f, i);
-  }
-  for (int32_t f = 0; f < mesh->nfaces; f++) {
-    if (mesh->face_patch[f] >= 0 && open[mesh->face_patch[f]]) {
-      sum[1] += pow(mesh->face_h[f], DIM - 1);
-    }
+  for (int32_t i = 0; i < mesh->nleaves; i++) sum[0] += clean->net[i];
+  for (int32_t k = 0; k < clean->nboundary; k++) {
+    const int32_t f = clean->boundary[k];
+    if (open[mesh->face_patch[f]]) sum[1] += pow(mesh->face_h[f], DIM - 1);
   }
   MPI_CHECK(
       MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, mesh->comm));
   if (sum[1] == 0) return;
-  for (int32_t f = 0; f < mesh->nfaces; f++) {
-    if (mesh->face_patch[f] >= 0 && open[mesh->face_patch[f]]) {
-      u_f[f] -= (mesh->face_leaf[f][1] < 0 ? 1 : -1) * sum[0] / sum[1];
-    }
+  for (int32_t k = 0; k < clean->nboundary; k++) {
+    const int32_t f = clean->boundary[k], i = mesh->face_owner[f];
+    if (!open[mesh->face_patch[f]]) continue;
+    u_f[f] -= (mesh->face_leaf[f][1] < 0 ? 1 : -1) * sum[0] / sum[1];
+    clean->net[i] = net_outflow(mesh, u_f, i);
   }
 }
 
-/* Net outflow of every node, from the leaves up; the parts of straddling
+/* Net outflow of every node, from the leaves (in) up; the parts of straddling
  * nodes are added over ranks. */
-static void gather_net(struct clean *clean, const struct mesh *mesh,
-                       const double *u_f) {
+static void gather_net(struct clean *clean, const struct mesh *mesh) {
   const int32_t n = mesh->nleaves;
-  for (int32_t i = 0; i < n; i++) clean->net[i] = net_outflow(mesh, u_f, i);
   if (mesh->nranks > 1) {
     memset(clean->shared, 0,
            (size_t)clean->nslots * NCHILD * sizeof *clean->shared);
@@ -287,10 +315,8 @@ static void tell_node(struct clean *clean, const struct mesh *mesh,
   }
   const double area = mesh->volume[node] / mesh->h[node];
   for (int f = 0; f < NFACE; f++) {
-    const int32_t face = mesh->cell_face[node][f];
-    if (face < mesh->nfaces && mesh->face_owner[face] == node &&
-        mesh->face_patch[face] < 0) {
-      u_f[face] += change[f] / area;
+    if (clean->owned[node] >> f & 1) {
+      u_f[mesh->cell_face[node][f]] += change[f] / area;
     }
   }
 }
@@ -320,9 +346,11 @@ void clean_face_velocity(struct clean *clean, const struct mesh *mesh,
                          const bool *open, double *u_f) {
   CHECK(clean->revision == mesh->revision, "tree of another mesh");
   mesh_fill_faces(mesh, 1, &u_f);
-  balance_boundaries(mesh, open, u_f);
-  mesh_fill_faces(mesh, 1, &u_f);
-  gather_net(clean, mesh, u_f);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    clean->net[i] = net_outflow(mesh, u_f, i);
+  }
+  balance_boundaries(clean, mesh, open, u_f);
+  gather_net(clean, mesh);
   balance_trees(clean);
   for (int32_t t = 0; t < clean->ntrees; t++) {
     if (clean->root[t] < 0) continue;

@@ -10,42 +10,48 @@
 
 static inline bool is_grains(double c) { return c >= 0.5; }
 
-/* du_e/dx_t of leaf i; grains look at grains only, on one side if need be. */
-static double slope(const struct mesh *mesh, const double *c, const double *u,
-                    int32_t i, int t) {
+/* du_e/dx_t of leaf i for all e; grains look at grains only, on one side if
+ * need be. */
+static void slopes(const struct mesh *mesh, const double *c,
+                   double *const u[DIM], int32_t i, int t, double grad[DIM]) {
   const int32_t *stencil = mesh->stencil[i];
   const int32_t low = stencil[STENCIL_CENTRE - stencil_step(t)];
   const int32_t high = stencil[STENCIL_CENTRE + stencil_step(t)];
   const bool gas = !is_grains(c[i]);
   const bool lower = gas || is_grains(c[low]);
   const bool upper = gas || is_grains(c[high]);
-  const double difference = (upper ? u[high] : u[i]) - (lower ? u[low] : u[i]);
-  return lower || upper ? difference / (mesh->h[i] * (lower + upper)) : 0;
+  const int32_t from = lower ? low : i, to = upper ? high : i;
+  const double span = mesh->h[i] * (lower && upper ? 2 : 1);
+  for (int e = 0; e < DIM; e++) grad[e] = (u[e][to] - u[e][from]) / span;
 }
 
-static double leaf_shear_rate(const struct mesh *mesh, const double *c,
-                              struct field *const u[DIM], int32_t i) {
-  double grad[DIM][DIM], sum = 0;
-  for (int e = 0; e < DIM; e++) {
-    for (int t = 0; t < DIM; t++) grad[e][t] = slope(mesh, c, u[e]->v, i, t);
-  }
+static double leaf_shear_squared(const struct mesh *mesh, const double *c,
+                                 double *const u[DIM], int32_t i) {
+  double grad[DIM][DIM], sum = 0; /* grad[t][e] = du_e/dx_t */
+  for (int t = 0; t < DIM; t++) slopes(mesh, c, u, i, t, grad[t]);
   for (int e = 0; e < DIM; e++) {
     sum += 2 * grad[e][e] * grad[e][e];
     for (int t = e + 1; t < DIM; t++) {
       sum += (grad[e][t] + grad[t][e]) * (grad[e][t] + grad[t][e]);
     }
   }
-  return sqrt(sum);
+  return sum;
 }
 
 double closure_fields_shear_rate(const struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
-  double sum[2] = {0};
+  double sum[2] = {0}, *u[DIM];
+  for (int e = 0; e < DIM; e++) u[e] = sim->u[e]->v;
   field_fill_many(mesh, DIM, sim->u);
   field_fill(mesh, sim->c);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
+    sim->shear_rate->v[i] = leaf_shear_squared(mesh, sim->c->v, u, i);
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    sim->shear_rate->v[i] = sqrt(sim->shear_rate->v[i]);
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double grains = sim->c->v[i] * mesh->volume[i];
-    sim->shear_rate->v[i] = leaf_shear_rate(mesh, sim->c->v, sim->u, i);
     sum[0] += grains * sim->shear_rate->v[i];
     sum[1] += grains;
   }

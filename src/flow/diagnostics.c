@@ -2,7 +2,6 @@
 #include "talus/diagnostics.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "talus/closure_fields.h"
 #include "talus/error.h"
@@ -36,17 +35,6 @@ static double sum_total(const struct mesh *mesh, struct sum local) {
   }
   mem_free(all);
   return total.value + total.rest;
-}
-
-/* Volume fraction with valid helper nodes, a copy so that the state is left
- * alone. [ncells], caller frees. */
-static double *copy_fraction(const struct simulation *sim) {
-  const struct mesh *mesh = sim->mesh;
-  double *c = MEM_NEW(double, (size_t)mesh->ncells);
-  const struct bc *bc = sim->c->bc;
-  memcpy(c, sim->c->v, sizeof(double) * (size_t)mesh->nleaves);
-  mesh_fill(mesh, 1, &c, &bc, false);
-  return c;
 }
 
 /* Centre along axis d of what lies below the plane in a cell of width 1, seen
@@ -106,17 +94,16 @@ static void measure_sums(const struct simulation *sim, const double *c,
 void diagnostics_measure(const struct simulation *sim,
                          struct diagnostics *diagnostics) {
   const struct mesh *mesh = sim->mesh;
-  double *c = copy_fraction(sim);
+  const double *c = sim->c->v;
   bool *heap = MEM_NEW(bool, (size_t)mesh->nleaves);
+  diagnostics->shear_rate = closure_fields_shear_rate(sim); /* fills c */
   measure_sums(sim, c, diagnostics);
   droplets_find(mesh, c, heap, &diagnostics->droplets);
   outline_measure(mesh, c, heap, outline_axis(sim->params->gravity),
                   &diagnostics->outline);
-  diagnostics->shear_rate = closure_fields_shear_rate(sim);
   diagnostics->height = outline_height(&diagnostics->outline);
   diagnostics->front = outline_front(&diagnostics->outline);
   mem_free(heap);
-  mem_free(c);
 }
 
 void diagnostics_free(struct diagnostics *diagnostics) {

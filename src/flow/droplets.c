@@ -29,6 +29,7 @@ static int32_t find_root(int32_t *parent, int32_t i) {
 }
 
 static void join(int32_t *parent, int32_t i, int32_t j) {
+  if (parent[i] == parent[j]) return;
   i = find_root(parent, i);
   j = find_root(parent, j);
   if (i < j)
@@ -37,7 +38,8 @@ static void join(int32_t *parent, int32_t i, int32_t j) {
     parent[i] = j;
 }
 
-/* parent [nleaves] of the pieces of this rank, -1 where there are no grains. */
+/* parent [nleaves]: the first leaf of the piece, -1 where there are no grains.
+ */
 static int32_t *join_leaves(const struct mesh *mesh, const double *c) {
   int32_t *parent = MEM_NEW(int32_t, (size_t)mesh->nleaves);
   for (int32_t i = 0; i < mesh->nleaves; i++)
@@ -52,23 +54,25 @@ static int32_t *join_leaves(const struct mesh *mesh, const double *c) {
   return parent;
 }
 
-/* Pieces of this rank in order of their labels; returns how many. */
-static int list_pieces(const struct mesh *mesh, const double *c,
-                       const int32_t *parent, struct piece **pieces) {
+/* Pieces of this rank in order of their labels; returns how many. The parent
+ * of a leaf becomes the number of its piece. */
+static int number_pieces(const struct mesh *mesh, const double *c,
+                         int32_t *parent, struct piece **pieces) {
   double first = (double)forest_first_leaf(mesh->forest);
-  double *volume = MEM_NEW(double, (size_t)mesh->nleaves);
   int n = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    if (parent[i] < 0) continue;
-    volume[parent[i]] += c[i] * mesh->volume[i];
-    n += parent[i] == i;
-  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) n += parent[i] == i;
   *pieces = MEM_NEW(struct piece, (size_t)n);
   n = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++)
-    if (parent[i] == i)
-      (*pieces)[n++] = (struct piece){first + (double)i, volume[i]};
-  mem_free(volume);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (parent[i] < 0) continue;
+    if (parent[i] == i) {
+      (*pieces)[n].label = first + (double)i;
+      parent[i] = n++;
+    } else {
+      parent[i] = parent[parent[i]]; /* an earlier leaf, numbered already */
+    }
+    (*pieces)[parent[i]].volume += c[i] * mesh->volume[i];
+  }
   return n;
 }
 
@@ -78,13 +82,24 @@ static int compare_links(const void *p, const void *q) {
   return x->b < y->b ? -1 : x->b > y->b;
 }
 
+/* Labels of leaves and ghosts, < 0: no grains. */
+static double *label_leaves(const struct mesh *mesh, const int32_t *number,
+                            const struct piece *pieces) {
+  double *label = MEM_NEW(double, (size_t)(mesh->nleaves + mesh->nghosts));
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    label[i] = number[i] < 0 ? -1 : pieces[number[i]].label;
+  mesh_fill_ghosts(mesh, 1, &label);
+  return label;
+}
+
 /* Links across faces between this rank and others, each once. Every such face
- * is listed on one of its two ranks. label [nleaves + nghosts], < 0: no
- * grains. */
-static int list_links(const struct mesh *mesh, const double *label,
-                      struct link **links) {
+ * is listed on one of its two ranks. number [nleaves] of pieces. */
+static int list_links(const struct mesh *mesh, const int32_t *number,
+                      const struct piece *pieces, struct link **links) {
   int n = 0, room = 0;
   *links = NULL;
+  if (mesh->nranks == 1) return 0;
+  double *label = label_leaves(mesh, number, pieces);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     int32_t i = mesh->face_leaf[f][0], j = mesh->face_leaf[f][1];
     if (i < 0 || j < 0 || (i < mesh->nleaves && j < mesh->nleaves)) continue;
@@ -95,6 +110,7 @@ static int list_links(const struct mesh *mesh, const double *label,
     }
     (*links)[n++] = (struct link){label[i], label[j]};
   }
+  mem_free(label);
   if (n == 0) return 0;
   qsort(*links, (size_t)n, sizeof **links, compare_links);
   int kept = 1;
@@ -172,27 +188,23 @@ static int32_t find_heap(int n, const struct piece *pieces, const int32_t *root,
 
 void droplets_find(const struct mesh *mesh, const double *c, bool *heap,
                    struct droplets *droplets) {
-  double first = (double)forest_first_leaf(mesh->forest);
-  double *label = MEM_NEW(double, (size_t)(mesh->nleaves + mesh->nghosts));
-  int32_t *parent = join_leaves(mesh, c);
-  for (int32_t i = 0; i < mesh->nleaves; i++)
-    label[i] = parent[i] < 0 ? -1 : first + (double)parent[i];
-  mesh_fill_ghosts(mesh, 1, &label);
-
+  int32_t *number = join_leaves(mesh, c);
   struct piece *pieces;
   struct link *links;
-  int npieces = list_pieces(mesh, c, parent, &pieces);
-  int nlinks = list_links(mesh, label, &links);
-  npieces = gather_pairs(mesh, npieces, (void **)&pieces);
+  int nmine = number_pieces(mesh, c, number, &pieces);
+  double label = nmine > 0 ? pieces[0].label : 0;
+  int nlinks = list_links(mesh, number, pieces, &links);
+  int npieces = gather_pairs(mesh, nmine, (void **)&pieces);
   nlinks = gather_pairs(mesh, nlinks, (void **)&links);
   int32_t *root = join_pieces(npieces, pieces, nlinks, links);
   int32_t largest = find_heap(npieces, pieces, root, droplets);
+  /* ours stand one after the other among those of all ranks */
+  const int32_t *mine =
+      nmine > 0 ? root + find_piece(npieces, pieces, label) : root;
   for (int32_t i = 0; i < mesh->nleaves; i++)
-    heap[i] =
-        label[i] >= 0 && root[find_piece(npieces, pieces, label[i])] == largest;
+    heap[i] = number[i] >= 0 && mine[number[i]] == largest;
   mem_free(root);
   mem_free(links);
   mem_free(pieces);
-  mem_free(parent);
-  mem_free(label);
+  mem_free(number);
 }

@@ -54,7 +54,7 @@ static bool surface_level(const struct mesh *mesh, const double gravity[DIM],
   } else {
     for (int f = 0; f < NFACE; f++) {
       const double next = c[mesh->stencil[i][stencil_face(f)]];
-      if (vof_is_cut(next) || (next > 0.5) == (c[i] > 0.5)) continue;
+      if ((next > 0.5) == (c[i] > 0.5) || vof_is_cut(next)) continue;
       at[f >> 1] += f & 1 ? 0.5 : -0.5;
       count++;
     }
@@ -80,6 +80,7 @@ static void spread_level(const struct mesh *mesh,
       if (node >= mesh->begin_virtual) {
         node = mesh->virtual_leaf[(node - mesh->begin_virtual) / NCHILD];
       }
+      if (balance->count[node] == 0) continue;
       level += balance->level[node];
       count += balance->count[node];
     }
@@ -222,9 +223,11 @@ void properties_shear_rate(const struct mesh *mesh, double *const u[DIM],
                            double *shear_f) {
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      shear_f[f] = sqrt(face_shear_squared(mesh, d, f, u));
+      shear_f[f] = face_shear_squared(mesh, d, f, u);
     }
   }
+  /* apart, several at a time: roots are slow */
+  for (int32_t f = 0; f < mesh->nfaces; f++) shear_f[f] = sqrt(shear_f[f]);
 }
 
 /* theta_f, p_f [nfaces]: part of each face's line in the grains, and the

@@ -219,6 +219,7 @@ void simulation_remesh(struct simulation *sim) {
   sim->hierarchy = hierarchy_new(sim->mesh);
   sim->clean = clean_new(sim->mesh);
   fields_reset(&sim->fields, sim->mesh);
+  sim->planes_hold = false;
 }
 
 struct simulation *simulation_new_on(const struct params *params,
@@ -284,13 +285,11 @@ static double mixed_velocity(const struct simulation *sim,
   return momentum / mass;
 }
 
+/* What the grid may follow. */
 static void fill_state(struct simulation *sim, int halvings) {
   const struct params *params = sim->params;
   const struct mesh *mesh = sim->mesh;
   fill_shape(sim, &params->shape, halvings, sim->c);
-  for (int k = 0; k < params->ntracers; k++) {
-    fill_shape(sim, &params->tracer[k].shape, halvings, sim->tracer[k]);
-  }
   for (int d = 0; d < DIM; d++) {
     const struct function *function = &params->velocity[d];
     if (!function->eval) continue;
@@ -340,6 +339,9 @@ struct simulation *simulation_new(const struct params *params) {
     if (!adapt_grid(sim)) break;
   }
   fill_state(sim, HALVINGS);
+  for (int k = 0; k < params->ntracers; k++) {
+    fill_shape(sim, &params->tracer[k].shape, HALVINGS, sim->tracer[k]);
+  }
   fill_face_velocity(sim);
   step_start(sim);
   return sim;

@@ -6,8 +6,8 @@
  * Invariants, between steps
  * 1. c, tracers, u, u_f, p, g are valid on leaves (u_f on all faces); ghosts
  *    and helper nodes of cell fields are not: every stage fills what it reads.
- * 2. u_f is divergence-free to the tolerance of the projection; cleaning, the
- *    first stage of a step, makes it so to round-off.
+ * 2. u_f is divergence-free to round-off, by cleaning at the end of a step.
+ * 3. Where planes_hold, `normal` and `plane` are those of c.
  */
 #include "talus/step.h"
 
@@ -131,53 +131,60 @@ static double choose_dt(const struct simulation *sim, double dt_max,
   return dt;
 }
 
-/* What flows in through an opening is gas: the grains at it are not mirrored
- * there. */
-static void keep_grains_out(const struct simulation *sim, int d,
-                            const double *u_f, double *flux) {
-  const struct mesh *mesh = sim->mesh;
-  for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-    const int patch = mesh->face_patch[f];
-    if (patch < 0 || !sim->open[patch]) continue;
-    if (mesh->face_leaf[f][u_f[f] > 0 ? 0 : 1] < 0) flux[f] = 0;
-  }
+/* Make the planes of c those of what it is now. c is filled. */
+static void update_planes(struct simulation *sim) {
+  double *normal[DIM];
+  if (sim->planes_hold) return;
+  velocities(sim->normal, normal);
+  vof_reconstruct(sim->mesh, sim->c->v, normal, sim->plane->v);
+  sim->planes_hold = true;
 }
 
 /* Stage 3: c, tracers and the momentum near the interface, axis by axis, in
- * an order that alternates from step to step. */
+ * an order that alternates from step to step. The tracer (or c) is filled,
+ * normal and plane are its own. */
 static void sweep_tracer(struct simulation *sim, int d, double dt,
-                         const double *u_f, struct field *tracer) {
+                         double *const normal[DIM], const double *plane,
+                         double *tracer) {
   const struct mesh *mesh = sim->mesh;
-  double *normal[DIM];
-  velocities(sim->normal, normal);
-  field_fill(mesh, tracer);
-  vof_reconstruct(mesh, tracer->v, normal, sim->plane->v);
-  vof_flux(mesh, d, dt, u_f, tracer->v, normal, sim->plane->v, sim->face[0]->v);
-  keep_grains_out(sim, d, u_f, sim->face[0]->v);
-  vof_update(mesh, d, dt, u_f, sim->face[0]->v, sim->frozen->v, tracer->v);
+  const double *u_f = sim->u_f->v;
+  double *flux = sim->face[0]->v;
+  vof_flux(mesh, d, dt, u_f, sim->open, tracer, normal, plane, flux);
+  vof_update(mesh, d, dt, u_f, flux, sim->frozen->v, tracer);
 }
 
-static void advance_tracer(struct simulation *sim, double dt, const double *u_f,
+/* The planes of c are left as they are, for it may be set back. */
+static void advance_tracer(struct simulation *sim, double dt,
                            struct field *tracer) {
+  bool held = tracer == sim->c && sim->planes_hold;
   vof_freeze(sim->mesh, tracer->v, sim->frozen->v);
-  for (int s = 0; s < DIM; s++) {
-    sweep_tracer(sim, (int)((sim->step + s) % DIM), dt, u_f, tracer);
+  for (int s = 0; s < DIM; s++, held = false) {
+    const int d = (int)((sim->step + s) % DIM);
+    double *normal[DIM], *plane = (held ? sim->plane : sim->cell[DIM])->v;
+    velocities(held ? sim->normal : sim->cell, normal);
+    field_fill(sim->mesh, tracer);
+    if (!held) vof_reconstruct(sim->mesh, tracer->v, normal, plane);
+    sweep_tracer(sim, d, dt, normal, plane, tracer->v);
   }
 }
 
 static void sweep_grains(struct simulation *sim, int d, double dt) {
   const struct mesh *mesh = sim->mesh;
-  double density[2], *u[DIM], *start[DIM];
+  double density[2], *u[DIM], *start[DIM], *normal[DIM];
   struct momentum_flux flux = {.mass = sim->face[1]->v};
   densities(sim, density);
   velocities(sim->u, u), velocities(sim->u_old, start);
+  velocities(sim->normal, normal);
   for (int e = 0; e < DIM; e++) {
     flux.carried[e] = sim->face[2 + e]->v;
     flux.slope[e] = sim->cell[e]->v;
   }
   memcpy(sim->c_old->v, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
   field_fill_many(mesh, DIM, sim->u);
-  sweep_tracer(sim, d, dt, sim->u_f->v, sim->c);
+  field_fill(mesh, sim->c);
+  update_planes(sim);
+  sweep_tracer(sim, d, dt, normal, sim->plane->v, sim->c->v);
+  sim->planes_hold = false;
   momentum_flux(mesh, d, dt, density, sim->u_f->v, sim->c_old->v,
                 sim->face[0]->v, sim->band->v, u, &flux);
   momentum_update(mesh, d, dt, density, sim->u_f->v, sim->c_old->v,
@@ -204,7 +211,7 @@ static void advance_fractions(struct simulation *sim, double dt) {
            (size_t)mesh->nleaves * sizeof(double));
   }
   for (int k = 0; k < sim->params->ntracers; k++) {
-    advance_tracer(sim, dt, sim->u_f->v, sim->tracer[k]);
+    advance_tracer(sim, dt, sim->tracer[k]);
   }
   if (sim->params->single_phase) return;
   field_fill(mesh, sim->c);
@@ -240,7 +247,7 @@ static void update_density(struct simulation *sim) {
   densities(sim, density);
   velocities(sim->normal, normal);
   field_fill(mesh, sim->c);
-  vof_reconstruct(mesh, sim->c->v, normal, sim->plane->v);
+  update_planes(sim);
   properties_density(mesh, density, sim->c->v, sim->closed, sim->rho->v,
                      sim->alpha_f->v);
   field_fill(mesh, sim->rho);
@@ -550,8 +557,9 @@ static void add_travel(struct simulation *sim, double dt) {
 static bool is_finite(const struct simulation *sim) {
   double sum = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    sum += fabs(sim->p->v[i]);
-    for (int e = 0; e < DIM; e++) sum += fabs(sim->u[e]->v[i]);
+    double leaf = fabs(sim->p->v[i]);
+    for (int e = 0; e < DIM; e++) leaf += fabs(sim->u[e]->v[i]);
+    sum += leaf;
   }
   return isfinite(mesh_sum(sim->mesh, sum));
 }
@@ -620,14 +628,13 @@ int step_advance(struct simulation *sim, double dt_max) {
   const double divergence = sim->divergence_volume;
   double dt, dt_c;
   sim->mark = MPI_Wtime();
-  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
-  lap(sim, STAGE_FRACTION);
   fields_save(&sim->fields, sim->mesh);
   for (int attempt = 0;; attempt++) {
     dt = choose_dt(sim, dt_max, &dt_c), lap(sim, STAGE_OTHER);
     advance_state(sim, dt, dt_c);
     if (!has_failed(sim)) break;
     fields_restore(&sim->fields, sim->mesh);
+    sim->planes_hold = false;
     sim->energy.dissipated = dissipated;
     sim->divergence_volume = divergence;
     if (attempt == RETRIES) return EXIT_NUMERICAL;
@@ -640,17 +647,15 @@ int step_advance(struct simulation *sim, double dt_max) {
   set_cell_viscosity(sim), lap(sim, STAGE_OTHER);
   if (adapt_is_due(sim)) adapt_grid(sim);
   lap(sim, STAGE_ADAPTATION);
+  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  lap(sim, STAGE_FRACTION);
   return EXIT_DONE;
 }
 
 void step_synchronise(struct simulation *sim) {
-  const struct mesh *mesh = sim->mesh;
-  memcpy(sim->c_old->v, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  memcpy(sim->c_old->v, sim->c->v, (size_t)sim->mesh->nleaves * sizeof(double));
   if (sim->params->single_phase || sim->dt == 0) return;
-  memcpy(sim->u_half->v, sim->u_f->v,
-         (size_t)mesh->nfaces_all * sizeof(double));
-  clean_face_velocity(sim->clean, mesh, sim->open, sim->u_half->v);
-  advance_tracer(sim, 0.5 * sim->dt, sim->u_half->v, sim->c);
+  advance_tracer(sim, 0.5 * sim->dt, sim->c);
 }
 
 void step_desynchronise(struct simulation *sim) {
@@ -680,6 +685,7 @@ static struct solve_stats static_pressure(struct simulation *sim) {
 }
 
 void step_start(struct simulation *sim) {
+  sim->planes_hold = false;
   update_density(sim);
   const double divergence = clean_divergence(sim->mesh, sim->u_f->v);
   if (divergence > 0) make_solenoidal(sim, 1 / divergence, sim->u_f->v);

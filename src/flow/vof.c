@@ -62,8 +62,8 @@ static double swept_fraction(const struct mesh *mesh, int d, int32_t face,
 }
 
 void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
-              const double *c, double *const normal[DIM], const double *alpha,
-              double *flux) {
+              const bool *open, const double *c, double *const normal[DIM],
+              const double *alpha, double *flux) {
   for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
     const double u = u_f[f];
     const int upwind = u > 0 ? 0 : 1;
@@ -72,6 +72,7 @@ void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
     if (leaf < 0) { /* carried in through a boundary */
       const int32_t *node = mesh->face_node[f];
       fraction = min2(max2(0.5 * (c[node[0]] + c[node[1]]), 0), 1);
+      if (open && open[mesh->face_patch[f]]) fraction = 0;
     } else if (!vof_is_cut(c[leaf]) || u == 0) {
       fraction = c[leaf];
     } else {

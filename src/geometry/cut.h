@@ -14,9 +14,9 @@
 
 /* The smaller side of a cut, reflected and sorted: plane.h, above eq. (2). */
 struct cut {
-  double m[DIM]; /* |n_d|/|n|_1, ascending */
-  int axis[DIM]; /* m[i] belongs to axis[i] */
-  double norm;   /* |n|_1 */
+  double m[DIM];  /* |n_d|/|n|_1, ascending */
+  int place[DIM]; /* |n_d|/|n|_1 = m[place[d]] */
+  double norm;    /* |n|_1 */
 };
 
 static inline double positive(double a) { return a > 0. ? a : 0.; }
@@ -169,18 +169,16 @@ static inline void small_centroid(const double m[3], double a, double y[3]) {
 
 #endif
 
-/* As sorted_components, and remember which axis each component came from. */
+/* As sorted_components, and remember where each component went. */
 static inline struct cut cut_sorted(const double n[DIM], double norm) {
   struct cut cut = {.norm = norm};
-  for (int i = 0; i < DIM; i++) {
-    double m = fabs(n[i]) / norm;
-    int j = i;
-    for (; j > 0 && cut.m[j - 1] > m; j--) {
-      cut.m[j] = cut.m[j - 1];
-      cut.axis[j] = cut.axis[j - 1];
-    }
-    cut.m[j] = m;
-    cut.axis[j] = i;
+  double m[DIM];
+  for (int d = 0; d < DIM; d++) m[d] = fabs(n[d]) / norm;
+  for (int d = 0; d < DIM; d++) {
+    int place = 0;
+    for (int e = 0; e < DIM; e++) place += e < d ? m[e] <= m[d] : m[e] < m[d];
+    cut.place[d] = place;
+    cut.m[place] = m[d];
   }
   return cut;
 }
@@ -194,10 +192,9 @@ static inline void cut_centroid(const struct cut *cut, const double n[DIM],
   double y[DIM];
   /* 1e-100 stands for the limit a -> 0 and has a square that is not 0 */
   small_centroid(cut->m, max2(0.5 - fabs(alpha) / cut->norm, 1e-100), y);
-  for (int i = 0; i < DIM; i++) {
-    int d = cut->axis[i];
+  for (int d = 0; d < DIM; d++) {
     bool mirrored = (n[d] < 0.) != (alpha > 0.);
-    x[d] = mirrored ? 0.5 - y[i] : y[i] - 0.5;
+    x[d] = mirrored ? 0.5 - y[cut->place[d]] : y[cut->place[d]] - 0.5;
   }
 }
 

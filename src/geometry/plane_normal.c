@@ -95,49 +95,62 @@ enum { GRADIENT = 1, HESSIAN = 1 + DIM, TERMS = HESSIAN + DIM * (DIM + 1) / 2 };
  *   dV/dn = dV/dalpha (x_0 - x_k),   x the centroids of the plane's cuts,
  *
  * where alpha follows n such that cell 0 keeps its volume: dalpha/dn = x_0.
+ * local is alpha as seen from the cell.
  */
-static inline void add_products(double r, const double derivative[DIM],
-                                double term[TERMS]) {
+static inline void add_cell(const struct cut *cut, const double n[DIM],
+                            double local, const double origin[DIM],
+                            const double offset[DIM], double c,
+                            double sum[TERMS]) {
+  double a = 0.5 - fabs(local), derivative[DIM], x[DIM];
+  if (a <= 0.) {
+    double r = (local > 0. ? 1. : 0.) - c;
+    sum[0] += r * r;
+    return;
+  }
+  double v = small_volume(cut->m, a), slope = small_slope(cut->m, a);
+  double r = (local > 0. ? 1. - v : v) - c;
+  sum[0] += r * r;
+  cut_centroid(cut, n, local, x);
+  for (int d = 0; d < DIM; d++)
+    derivative[d] = slope * (origin[d] - (offset[d] + x[d]));
   for (int d = 0, t = HESSIAN; d < DIM; d++) {
-    term[GRADIENT + d] = r * derivative[d];
-    for (int e = 0; e <= d; e++) term[t++] = derivative[d] * derivative[e];
+    sum[GRADIENT + d] += r * derivative[d];
+    for (int e = 0; e <= d; e++) sum[t++] += derivative[d] * derivative[e];
   }
 }
 
 /*
  * Misfit over the known cells of the plane with normal n, |n|_1 = 1, and its
- * derivatives. Sums run over -1, 1, 0 along each axis: a reflection changes no
- * bit of them.
+ * derivatives. Sums run over -1, 1, 0 along each axis, rows first: a reflection
+ * changes no bit of them.
  */
 static void measure_misfit(const double *c, const bool *known,
                            const double n[DIM], double sum[TERMS]) {
+  static const int order[] = {0, 2, 1};
   const int centre = PLANE_STENCIL / 2;
   const struct cut cut = cut_sorted(n, 1.);
-  double term[PLANE_STENCIL][TERMS] = {{0.}}, origin[DIM], x[DIM];
-  double alpha = plane_alpha(n, c[centre]);
+  double origin[DIM], alpha = plane_alpha(n, c[centre]);
   cut_centroid(&cut, n, alpha, origin);
-  for (int s = 0; s < PLANE_STENCIL; s++) {
-    if (known && !known[s]) continue;
-    double offset[DIM], local = alpha, derivative[DIM];
-    for (int d = 0, rest = s; d < DIM; d++, rest /= 3) {
-      offset[d] = rest % 3 - 1;
-      local -= n[d] * offset[d];
+  for (int t = 0; t < TERMS; t++) sum[t] = 0.;
+  for (int k = 0; k < (DIM == 3 ? 3 : 1); k++) {
+    double layer[TERMS] = {0.};
+    for (int j = 0; j < 3; j++) {
+      double row[TERMS] = {0.};
+      for (int i = 0; i < 3; i++) {
+        int at[3] = {order[i], order[j], order[k]}, s = 0;
+        double offset[DIM], local = alpha;
+        for (int d = 0; d < DIM; d++) {
+          s += STRIDE[d] * at[d];
+          offset[d] = at[d] - 1;
+          local -= n[d] * offset[d];
+        }
+        if (!known || known[s])
+          add_cell(&cut, n, local, origin, offset, c[s], row);
+      }
+      for (int t = 0; t < TERMS; t++) layer[t] += row[t];
     }
-    double a = 0.5 - fabs(local), v = a > 0. ? small_volume(cut.m, a) : 0.;
-    double r = (local > 0. ? 1. - v : v) - c[s];
-    term[s][0] = r * r;
-    if (a <= 0. || s == centre) continue;
-    double slope = small_slope(cut.m, a);
-    cut_centroid(&cut, n, local, x);
-    for (int d = 0; d < DIM; d++)
-      derivative[d] = slope * (origin[d] - (offset[d] + x[d]));
-    add_products(r, derivative, term[s]);
+    for (int t = 0; t < TERMS; t++) sum[t] += layer[t];
   }
-  for (int size = PLANE_STENCIL / 3; size > 0; size /= 3)
-    for (int s = 0; s < size; s++)
-      for (int t = 0; t < TERMS; t++)
-        term[s][t] = term[3 * s][t] + term[3 * s + 2][t] + term[3 * s + 1][t];
-  for (int t = 0; t < TERMS; t++) sum[t] = term[0][t];
 }
 
 /* Solve h x = x for a symmetric positive h, given and changed as its lower

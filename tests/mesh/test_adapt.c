@@ -209,7 +209,8 @@ static void move(struct simulation *sim, double leaves) {
       }
       field_fill(mesh, sim->c);
       vof_reconstruct(mesh, sim->c->v, normal, sim->plane->v);
-      vof_flux(mesh, d, fabs(dt), u_f, sim->c->v, normal, sim->plane->v, flux);
+      vof_flux(mesh, d, fabs(dt), u_f, NULL, sim->c->v, normal, sim->plane->v,
+               flux);
       vof_update(mesh, d, fabs(dt), u_f, flux, sim->frozen->v, sim->c->v);
     }
   }

@@ -226,7 +226,8 @@ START_TEST(a_divided_side_passes_what_the_coarse_plane_holds) {
   field_fill(mesh, t.c);
   vof_reconstruct(mesh, t.c->v, t.normal, t.plane->v);
   for (int d = 0; d < DIM; d++) {
-    vof_flux(mesh, d, dt, t.u_f->v, t.c->v, t.normal, t.plane->v, t.flux->v);
+    vof_flux(mesh, d, dt, t.u_f->v, NULL, t.c->v, t.normal, t.plane->v,
+             t.flux->v);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       const int32_t face = mesh->cell_face[i][2 * d + 1];
       if (face < mesh->begin_face_average || !vof_is_cut(t.c->v[i])) continue;

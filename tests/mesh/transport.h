@@ -28,7 +28,7 @@ static inline void transport_sweep(const struct bench *b, struct transport *t,
                                    int d, double dt) {
   field_fill(b->mesh, t->c);
   vof_reconstruct(b->mesh, t->c->v, t->normal, t->plane->v);
-  vof_flux(b->mesh, d, dt, t->u_f->v, t->c->v, t->normal, t->plane->v,
+  vof_flux(b->mesh, d, dt, t->u_f->v, NULL, t->c->v, t->normal, t->plane->v,
            t->flux->v);
   vof_update(b->mesh, d, dt, t->u_f->v, t->flux->v, t->frozen->v, t->c->v);
 }
