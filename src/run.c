@@ -173,6 +173,7 @@ static void write_snapshot(struct run *run) {
                                      .length_scale = run->params->length_scale,
                                      .parameters = run->parameters};
   snapshots_write(run->snapshots, sim->mesh, &sim->fields, &heading);
+  closure_fields_release(sim);
 }
 
 /* Everything after a step, and before the first one, but the checkpoint. */

@@ -96,7 +96,8 @@ struct simulation *run_state_read(const char *path, const struct params *params,
     solve[k]->status = (enum solve_status)verdicts.status[k];
   }
   for (int k = 0; k < sim->fields.n; k++)
-    if (sim->fields.field[k]->location == FIELD_CELL)
+    if (sim->fields.field[k]->restart &&
+        sim->fields.field[k]->location == FIELD_CELL)
       field_fill(sim->mesh, sim->fields.field[k]);
   return sim;
 }

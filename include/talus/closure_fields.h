@@ -14,12 +14,13 @@
 
 struct simulation;
 
-/* Set sim->shear_rate from the present velocity; helper nodes of u and c are
- * filled. Returns its mean over the grains, sum c shear_rate V / sum c V.
- * Collective. */
+/* Mean of the present shear rate over the grains, sum c shear_rate V / sum c V;
+ * helper nodes of u and c are filled. Collective. */
 double closure_fields_shear_rate(const struct simulation *sim);
 
-/* Set sim->shear_rate and sim->known. Collective. */
+/* Make sim->shear_rate and sim->known, for as long as they are wanted; helper
+ * nodes of u and c are filled. Collective. */
 void closure_fields_update(const struct simulation *sim);
+void closure_fields_release(const struct simulation *sim);
 
 #endif

@@ -38,12 +38,16 @@ struct field {
   const char *title;
   enum field_location location;
   enum field_remap remap;
-  bool output;   /* written to snapshots */
-  bool restart;  /* written to checkpoints */
-  int component; /* axis if part of a vector named `name` without the
-                    suffix "_x", "_y", "_z"; else -1 */
-  double *v;     /* owned */
-  double *saved; /* owned: copy made by fields_save, NULL before */
+  bool output;             /* written to snapshots */
+  bool restart;            /* written to checkpoints */
+  int component;           /* axis if part of a vector named `name` without the
+                              suffix "_x", "_y", "_z"; else -1 */
+  double *v;               /* owned */
+  double *saved;           /* owned: copy made by fields_save, NULL before */
+  const struct field *old; /* has what v was when fields_save was called, so
+                              that it makes no copy; NULL: none has */
+  bool on_demand; /* v is NULL but while somebody (who allocates it, on the
+                     leaves, and frees it) needs it */
   struct bc bc[MESH_MAX_PATCHES];
 };
 
@@ -59,6 +63,8 @@ struct field *fields_add(struct fields *fields, const struct mesh *mesh,
                          const char *name, const char *unit, const char *title,
                          enum field_location location, enum field_remap remap);
 struct field *fields_find(const struct fields *fields, const char *name);
+/* Free every array, or only those that are not carried to new leaves. */
+void fields_release(struct fields *fields, bool all);
 /* Replace every array by a zero one that fits `mesh`. */
 void fields_reset(struct fields *fields, const struct mesh *mesh);
 void fields_destroy(struct fields *fields);

@@ -36,6 +36,13 @@ void hdf5_write_group(struct hdf5_file *file, const char *name);
 /* Make a dataset: data [rows][columns], rows of this rank. */
 void hdf5_write(struct hdf5_file *file, const char *name, enum hdf5_type type,
                 int64_t rows, int columns, const void *data);
+/* The same, with data [n][columns] of the rows [first, first + n) of this rank
+ * made by `fill` a piece at a time, in order, so that no table is held whole.
+ * A rank has fill called for its own rows only. */
+typedef void hdf5_fill(void *context, int64_t first, int64_t n, void *data);
+void hdf5_write_pieces(struct hdf5_file *file, const char *name,
+                       enum hdf5_type type, int64_t rows, int columns,
+                       hdf5_fill *fill, void *context);
 /* Size of a dataset over all ranks; false if there is none. */
 bool hdf5_read_size(struct hdf5_file *file, const char *name, int64_t *rows,
                     int *columns);

@@ -16,6 +16,11 @@
 
 enum { MEM_ALIGNMENT = 64, MEM_LARGE = 1024 }; /* bytes */
 
+/* Have the system take back what is freed of the arrays of large grids: else
+ * the C library keeps it for later, up to a fifth of the peak. Called once,
+ * before the first large array. */
+void mem_begin(void);
+
 /* A zeroed array of `count` objects of a type, the caller's to free. */
 #define MEM_NEW(type, count) ((type *)mem_alloc((count), sizeof(type)))
 

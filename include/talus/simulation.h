@@ -68,13 +68,12 @@ struct simulation {
   bool planes_hold;                  /* they are those of c as it is */
   struct field *frozen;              /* cc of vof.h, or scratch */
   struct field *band;                /* leaves whose momentum rides with c */
-  struct field *c_old;
-  struct field *u_old[DIM];    /* u^n while u is being advanced */
-  struct field *u_half;        /* u_f^{n+1/2} */
-  struct field *cell[3 * DIM]; /* scratch */
-  struct field *face[DIM + 2]; /* scratch */
+  struct field *u_old[DIM];          /* u^n while u is being advanced */
+  struct field *u_half;              /* u_f^{n+1/2} */
+  struct field *cell[3 * DIM];       /* scratch, 2 DIM of them if theta is 1 */
+  struct field *face[DIM + 1];       /* scratch */
 
-  /* For output, set when it is due (closure_fields.h) */
+  /* For output, on demand (closure_fields.h) */
   struct field *shear_rate;
   struct field *known[SIMULATION_MAX_KNOWN]; /* outputs of the closure */
   int nknown;

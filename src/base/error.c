@@ -53,6 +53,7 @@ void base_begin(int *argc, char ***argv) {
   /* Started without a launcher, Open MPI forks a daemon to spawn further
    * processes from unless told that nobody will ask for them. */
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  mem_begin();
   if (MPI_Init(argc, argv) != MPI_SUCCESS) FATAL("MPI does not start");
   MPI_CHECK(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN));
   MPI_CHECK(MPI_Comm_rank(MPI_COMM_WORLD, &rank));

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/memory.h"
 
+#include <malloc.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -8,6 +9,12 @@
 #include "talus/error.h"
 
 static int64_t live_blocks;
+
+void mem_begin(void) {
+#ifdef M_MMAP_THRESHOLD /* glibc, which raises it as it goes unless told */
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
 
 /* Bytes of an array, at least one so that every block has an address. */
 static size_t array_bytes(size_t count, size_t size) {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "talus/field.h"
+#include "talus/memory.h"
 #include "talus/params.h"
 #include "talus/rheology.h"
 #include "talus/simulation.h"
@@ -38,36 +39,57 @@ static double leaf_shear_squared(const struct mesh *mesh, const double *c,
   return sum;
 }
 
-double closure_fields_shear_rate(const struct simulation *sim) {
+/* The shear rate of all leaves, [nleaves]. */
+static void set_shear_rate(const struct simulation *sim, double *rate) {
   const struct mesh *mesh = sim->mesh;
-  double sum[2] = {0}, *u[DIM];
+  double *u[DIM];
   for (int e = 0; e < DIM; e++) u[e] = sim->u[e]->v;
   field_fill_many(mesh, DIM, sim->u);
   field_fill(mesh, sim->c);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    sim->shear_rate->v[i] = leaf_shear_squared(mesh, sim->c->v, u, i);
+    rate[i] = leaf_shear_squared(mesh, sim->c->v, u, i);
   }
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    sim->shear_rate->v[i] = sqrt(sim->shear_rate->v[i]);
-  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) rate[i] = sqrt(rate[i]);
+}
+
+double closure_fields_shear_rate(const struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double sum[2] = {0}, *rate = MEM_NEW(double, mesh->nleaves);
+  set_shear_rate(sim, rate);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double grains = sim->c->v[i] * mesh->volume[i];
-    sum[0] += grains * sim->shear_rate->v[i];
+    sum[0] += grains * rate[i];
     sum[1] += grains;
   }
+  mem_free(rate);
   const double total = mesh_sum(mesh, sum[0]), volume = mesh_sum(mesh, sum[1]);
   return volume > 0 ? total / volume : 0;
+}
+
+/* The array of a field on demand. */
+static double *provide(struct field *field, int32_t n) {
+  if (!field->v) field->v = MEM_NEW(double, n);
+  return field->v;
 }
 
 void closure_fields_update(const struct simulation *sim) {
   const struct rheology *grains = &sim->params->grains.rheology;
   const int32_t n = sim->mesh->nleaves;
-  closure_fields_shear_rate(sim);
+  double *shear_rate = provide(sim->shear_rate, n);
+  set_shear_rate(sim, shear_rate);
   for (int k = 0; k < sim->nknown; k++) {
-    double *known = sim->known[k]->v;
-    rheology_output(grains, k, n, sim->shear_rate->v, sim->p->v, known);
+    double *known = provide(sim->known[k], n);
+    rheology_output(grains, k, n, shear_rate, sim->p->v, known);
     for (int32_t i = 0; i < n; i++) {
       if (!is_grains(sim->c->v[i])) known[i] = 0;
     }
+  }
+}
+
+void closure_fields_release(const struct simulation *sim) {
+  for (int k = -1; k < sim->nknown; k++) {
+    struct field *field = k < 0 ? sim->shear_rate : sim->known[k];
+    mem_free(field->v);
+    field->v = NULL;
   }
 }

@@ -174,6 +174,7 @@ void remap_fields(struct simulation *sim, const struct forest_map *map) {
   struct carrier carrier = {.mesh = sim->mesh, .map = map, .c = sim->c->v};
   double *data[REMAP_MOST];
   int n = 0;
+  fields_release(&sim->fields, false);
   carrier.density[0] = sim->params->grains.density;
   carrier.density[1] = sim->params->gas.density;
   for (int k = 0; k < sim->fields.n; k++) {

@@ -162,16 +162,26 @@ static struct field *add_face(struct simulation *sim, const char *name) {
                     REMAP_NONE);
 }
 
+/* A field that is made when it is written. */
+static struct field *add_output(struct simulation *sim, const char *name,
+                                const char *unit, const char *title) {
+  struct field *field = add_cell(sim, name, unit, title, REMAP_NONE, true);
+  field->on_demand = true;
+  mem_free(field->v);
+  field->v = NULL;
+  return field;
+}
+
 static void add_known(struct simulation *sim) {
   const struct rheology_model *model = sim->params->grains.rheology.model;
-  sim->shear_rate = add_cell(sim, "shear_rate", "1/s", "shear rate sqrt(2 D:D)",
-                             REMAP_NONE, true);
+  sim->shear_rate =
+      add_output(sim, "shear_rate", "1/s", "shear rate sqrt(2 D:D)");
   CHECK(model->noutputs <= SIMULATION_MAX_KNOWN, "%s has %d outputs",
         model->name, model->noutputs);
   for (; sim->nknown < model->noutputs; sim->nknown++) {
     const struct rheology_quantity *quantity = &model->outputs[sim->nknown];
-    sim->known[sim->nknown] = add_cell(sim, quantity->name, quantity->unit,
-                                       quantity->title, REMAP_NONE, true);
+    sim->known[sim->nknown] =
+        add_output(sim, quantity->name, quantity->unit, quantity->title);
   }
 }
 
@@ -186,32 +196,33 @@ static void add_scratch(struct simulation *sim) {
   static const char *const cell[] = {"cell_0", "cell_1", "cell_2",
                                      "cell_3", "cell_4", "cell_5",
                                      "cell_6", "cell_7", "cell_8"};
-  static const char *const face[] = {"face_0", "face_1", "face_2", "face_3",
-                                     "face_4"};
+  static const char *const face[] = {"face_0", "face_1", "face_2", "face_3"};
   sim->rho = add_cell(sim, "density", "kg/m^3", "density", REMAP_NONE, false);
   sim->eta = add_cell(sim, "viscosity", "Pa s", "viscosity, mean of the faces",
                       REMAP_AVERAGE, true);
   sim->frozen = add_cell(sim, "frozen", "1", "", REMAP_NONE, false);
   sim->plane = add_cell(sim, "plane", "1", "", REMAP_NONE, false);
   sim->band = add_cell(sim, "band", "1", "", REMAP_NONE, false);
-  sim->c_old = add_cell(sim, "c_old", "1", "", REMAP_NONE, false);
   for (int d = 0; d < DIM; d++) {
     sim->normal[d] = add_cell(sim, normal[d], "1", "", REMAP_NONE, false);
     sim->u_old[d] = add_cell(sim, old[d], "m/s", "", REMAP_NONE, false);
+    sim->u[d]->old = sim->u_old[d];
   }
   add_known(sim);
   if (sim->params->side_walls.mu > 0) add_walls(sim);
-  for (int k = 0; k < 3 * DIM; k++) {
+  const int ncells = (sim->params->theta < 1 ? 3 : 2) * DIM;
+  for (int k = 0; k < ncells; k++) {
     sim->cell[k] = add_cell(sim, cell[k], "", "", REMAP_NONE, false);
   }
   sim->eta_f = add_face(sim, "face_viscosity");
   sim->alpha_f = add_face(sim, "face_specific_volume");
   sim->gravity_f = add_face(sim, "face_gravity");
   sim->u_half = add_face(sim, "face_half");
-  for (int k = 0; k < DIM + 2; k++) sim->face[k] = add_face(sim, face[k]);
+  for (int k = 0; k < DIM + 1; k++) sim->face[k] = add_face(sim, face[k]);
 }
 
 void simulation_remesh(struct simulation *sim) {
+  fields_release(&sim->fields, true);
   clean_destroy(sim->clean);
   hierarchy_destroy(sim->hierarchy);
   mesh_destroy(sim->mesh);
@@ -245,16 +256,18 @@ void simulation_destroy(struct simulation *sim) {
   mem_free(sim);
 }
 
-/* Fractions of a shape. Where its surface may pass, leaves of the finest level
- * are halved `halvings` times, coarser ones more often, so that what is DEEPEST
- * levels finer than they are is not missed. */
-static void fill_shape(const struct simulation *sim,
-                       const struct function *shape, int halvings,
-                       struct field *field) {
+/* How far shapes are divided to measure them, in levels below the finest of
+ * the grid: not at all to see where they are, to adapt the grid to them. */
+enum fineness { FINENESS_ROUGH = 0, FINENESS_FINAL = 3 };
+
+/* Fractions of a shape. Coarse leaves are divided more often, so that what
+ * is DEEPEST levels finer is not missed. */
+static void fill_shape(const struct simulation *sim, enum fineness fineness,
+                       const struct function *shape, struct field *field) {
   enum { DEEPEST = 6 };
   const struct mesh *mesh = sim->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    int depth = sim->params->level_max - mesh->level[i] + halvings;
+    int depth = sim->params->level_max - mesh->level[i] + (int)fineness;
     if (depth > DEEPEST) depth = DEEPEST;
     field->v[i] = shape->eval ? shape_fraction(shape->eval, shape->context,
                                                mesh->x[i], mesh->h[i], depth)
@@ -286,10 +299,10 @@ static double mixed_velocity(const struct simulation *sim,
 }
 
 /* What the grid may follow. */
-static void fill_state(struct simulation *sim, int halvings) {
+static void fill_state(struct simulation *sim, enum fineness fineness) {
   const struct params *params = sim->params;
   const struct mesh *mesh = sim->mesh;
-  fill_shape(sim, &params->shape, halvings, sim->c);
+  fill_shape(sim, fineness, &params->shape, sim->c);
   for (int d = 0; d < DIM; d++) {
     const struct function *function = &params->velocity[d];
     if (!function->eval) continue;
@@ -325,22 +338,29 @@ static void fill_face_velocity(struct simulation *sim) {
   field_fill_faces(mesh, sim->u_f);
 }
 
+static void adapt_to_state(struct simulation *sim, enum fineness fineness) {
+  fill_state(sim, fineness);
+  for (int k = 0; k <= 2 * sim->params->level_max; k++) {
+    if (!adapt_grid(sim)) break;
+    fill_state(sim, fineness);
+  }
+}
+
 struct simulation *simulation_new(const struct params *params) {
-  enum { HALVINGS = 3 };
   struct forest_layout layout;
   simulation_layout(params, &layout);
   const int level =
       params->ncriteria > 0 ? params->level_min : params->level_max;
   struct simulation *sim =
       simulation_new_on(params, forest_new(MPI_COMM_WORLD, &layout, level));
-  /* the grid from where the surface is, then the fractions in earnest */
-  for (int k = 0; k <= 2 * params->level_max && params->ncriteria > 0; k++) {
-    fill_state(sim, 0);
-    if (!adapt_grid(sim)) break;
+  if (params->ncriteria > 0) {
+    adapt_to_state(sim, FINENESS_ROUGH);
+    adapt_to_state(sim, FINENESS_FINAL);
+  } else {
+    fill_state(sim, FINENESS_FINAL);
   }
-  fill_state(sim, HALVINGS);
   for (int k = 0; k < params->ntracers; k++) {
-    fill_shape(sim, &params->tracer[k].shape, HALVINGS, sim->tracer[k]);
+    fill_shape(sim, FINENESS_FINAL, &params->tracer[k].shape, sim->tracer[k]);
   }
   fill_face_velocity(sim);
   step_start(sim);

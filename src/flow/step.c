@@ -41,6 +41,10 @@
 #define STALL_SLACK 10
 #define STALL_FLOOR 1e-10
 
+/* The scratch cell field that keeps c during a sweep, or while it is
+ * synchronised. */
+enum { C_OLD = 2 * DIM - 1 };
+
 /* A step that fails is repeated so often, each time with this part of dt. */
 enum { RETRIES = 3 };
 #define RETRY_FACTOR 0.25
@@ -171,24 +175,25 @@ static void advance_tracer(struct simulation *sim, double dt,
 static void sweep_grains(struct simulation *sim, int d, double dt) {
   const struct mesh *mesh = sim->mesh;
   double density[2], *u[DIM], *start[DIM], *normal[DIM];
-  struct momentum_flux flux = {.mass = sim->face[1]->v};
+  double *c_old = sim->cell[C_OLD]->v;
+  struct momentum_flux flux = {.mass = sim->u_half->v};
   densities(sim, density);
   velocities(sim->u, u), velocities(sim->u_old, start);
   velocities(sim->normal, normal);
   for (int e = 0; e < DIM; e++) {
-    flux.carried[e] = sim->face[2 + e]->v;
+    flux.carried[e] = sim->face[1 + e]->v;
     flux.slope[e] = sim->cell[e]->v;
   }
-  memcpy(sim->c_old->v, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  memcpy(c_old, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
   field_fill_many(mesh, DIM, sim->u);
   field_fill(mesh, sim->c);
   update_planes(sim);
   sweep_tracer(sim, d, dt, normal, sim->plane->v, sim->c->v);
   sim->planes_hold = false;
-  momentum_flux(mesh, d, dt, density, sim->u_f->v, sim->c_old->v,
-                sim->face[0]->v, sim->band->v, u, &flux);
-  momentum_update(mesh, d, dt, density, sim->u_f->v, sim->c_old->v,
-                  sim->frozen->v, sim->band->v, start, &flux, u);
+  momentum_flux(mesh, d, dt, density, sim->u_f->v, c_old, sim->face[0]->v,
+                sim->band->v, u, &flux);
+  momentum_update(mesh, d, dt, density, sim->u_f->v, c_old, sim->frozen->v,
+                  sim->band->v, start, &flux, u);
 }
 
 static void log_divergence(struct simulation *sim, double dt) {
@@ -329,11 +334,11 @@ static void advect_momentum(struct simulation *sim, double dt) {
   double *u[DIM], *g[DIM], *out[DIM];
   velocities(sim->u_old, u), velocities(sim->u, out);
   struct advection_work work = {.limiter = sim->params->limiter,
-                                .volume = sim->face[1]->v};
+                                .volume = sim->face[0]->v};
   for (int e = 0; e < DIM; e++) {
     work.slope[e] = sim->cell[e]->v;
     work.transverse[e] = sim->cell[DIM + e]->v;
-    work.flux[e] = sim->face[2 + e]->v;
+    work.flux[e] = sim->face[1 + e]->v;
   }
   predictor_acceleration(sim, g);
   advection_predict(mesh, dt, u, g, sim->closed, &work, sim->u_half->v);
@@ -419,7 +424,7 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
   }
   viscous_rhs(sim, dt, rhs);
   for (int e = 0; e < DIM; e++) {
-    double *inviscid = sim->cell[2 * DIM + e]->v;
+    double *inviscid = sim->face[e]->v; /* which has room for the leaves */
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       inviscid[i] = u[e][i] + dt * sim->g[e]->v[i];
       u[e][i] =
@@ -431,7 +436,7 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
       mesh, sim->hierarchy, mass, sim->eta_f->v, params->theta * dt, rhs, bc,
       params->tolerance_viscous * sim->scale, params->max_iterations, u);
   for (int e = 0; e < DIM; e++) {
-    const double *inviscid = sim->cell[2 * DIM + e]->v;
+    const double *inviscid = sim->face[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       const double lost = u[e][i] * (mass[i] / rho[i] - 1); /* to the walls */
       sim->viscous_g[e]->v[i] = (u[e][i] - inviscid[i] + lost) / dt;
@@ -653,13 +658,15 @@ int step_advance(struct simulation *sim, double dt_max) {
 }
 
 void step_synchronise(struct simulation *sim) {
-  memcpy(sim->c_old->v, sim->c->v, (size_t)sim->mesh->nleaves * sizeof(double));
+  memcpy(sim->cell[C_OLD]->v, sim->c->v,
+         (size_t)sim->mesh->nleaves * sizeof(double));
   if (sim->params->single_phase || sim->dt == 0) return;
   advance_tracer(sim, 0.5 * sim->dt, sim->c);
 }
 
 void step_desynchronise(struct simulation *sim) {
-  memcpy(sim->c->v, sim->c_old->v, (size_t)sim->mesh->nleaves * sizeof(double));
+  memcpy(sim->c->v, sim->cell[C_OLD]->v,
+         (size_t)sim->mesh->nleaves * sizeof(double));
 }
 
 /* Pressure and acceleration of the state at rest, without viscosity. */

@@ -51,17 +51,33 @@ static void write_forest(struct hdf5_file *file, const struct forest *forest) {
   mem_free(levels);
 }
 
-/* The values of a face field on all sides of the leaves; caller frees. */
-static double *sides_from_faces(const struct mesh *mesh, const double *v) {
-  double *side = MEM_NEW(double, (size_t)mesh->nleaves *NFACE);
-  double *copy = MEM_NEW(double, (size_t)mesh->nfaces_all);
-  memcpy(copy, v, sizeof(double) * (size_t)mesh->nfaces_all);
-  mesh_fill_faces(mesh, 1, &copy); /* the run must not notice a checkpoint */
-  for (int32_t i = 0; i < mesh->nleaves; i++)
-    for (int f = 0; f < NFACE; f++)
-      side[(int64_t)i * NFACE + f] = copy[mesh->cell_face[i][f]];
-  mem_free(copy);
-  return side;
+struct sides {
+  const struct mesh *mesh;
+  const double *v; /* [nfaces_all] */
+};
+
+static void fill_sides(void *context, int64_t first, int64_t n, void *data) {
+  const struct sides *sides = context;
+  double(*side)[NFACE] = data;
+  for (int64_t i = 0; i < n; i++) {
+    const int32_t *face = sides->mesh->cell_face[first + i];
+    for (int f = 0; f < NFACE; f++) side[i][f] = sides->v[face[f]];
+  }
+}
+
+/* The values of a face field on all sides of the leaves. The run must not
+ * notice a checkpoint: what filling changes is set back. */
+static void write_sides(struct hdf5_file *file, const char *path,
+                        const struct mesh *mesh, const struct field *field) {
+  struct sides sides = {mesh, field->v};
+  const size_t filled = (size_t)(mesh->nfaces_all - mesh->nfaces);
+  double *before = MEM_NEW(double, filled);
+  memcpy(before, field->v + mesh->nfaces, filled * sizeof(double));
+  mesh_fill_faces(mesh, 1, &field->v);
+  hdf5_write_pieces(file, path, HDF5_REAL, mesh->nleaves, NFACE, fill_sides,
+                    &sides);
+  memcpy(field->v + mesh->nfaces, before, filled * sizeof(double));
+  mem_free(before);
 }
 
 static void write_field(struct hdf5_file *file, const struct mesh *mesh,
@@ -71,9 +87,7 @@ static void write_field(struct hdf5_file *file, const struct mesh *mesh,
   if (field->location == FIELD_CELL) {
     hdf5_write(file, path, HDF5_REAL, mesh->nleaves, 1, field->v);
   } else {
-    double *side = sides_from_faces(mesh, field->v);
-    hdf5_write(file, path, HDF5_REAL, mesh->nleaves, NFACE, side);
-    mem_free(side);
+    write_sides(file, path, mesh, field);
   }
   hdf5_write_text(file, path, "unit", field->unit);
   hdf5_write_text(file, path, "title", field->title);
@@ -231,14 +245,16 @@ static void read_field(struct checkpoint *checkpoint, const struct mesh *mesh,
         "'%s' has no values of %s (%s) for this case; --restart needs the "
         "phases and tracers of the first run",
         checkpoint->path, field->name, field->title);
-  double *value = MEM_NEW(double, (size_t)mesh->nleaves *(size_t)wanted);
-  hdf5_read(checkpoint->file, path, HDF5_REAL, first, mesh->nleaves, wanted,
-            value);
-  if (field->location == FIELD_CELL)
-    memcpy(field->v, value, sizeof(double) * (size_t)mesh->nleaves);
-  else
-    faces_from_sides(mesh, value, field->v);
-  mem_free(value);
+  if (field->location == FIELD_CELL) {
+    hdf5_read(checkpoint->file, path, HDF5_REAL, first, mesh->nleaves, 1,
+              field->v);
+    return;
+  }
+  double *side = MEM_NEW(double, (size_t)mesh->nleaves *NFACE);
+  hdf5_read(checkpoint->file, path, HDF5_REAL, first, mesh->nleaves, NFACE,
+            side);
+  faces_from_sides(mesh, side, field->v);
+  mem_free(side);
 }
 
 void checkpoint_read_fields(struct checkpoint *checkpoint,

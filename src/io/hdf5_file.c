@@ -12,7 +12,7 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 
-enum { WORDS_LENGTH = 512 };
+enum { WORDS_LENGTH = 512, PIECE_LENGTH = 1 << 16 };
 
 struct hdf5_file {
   MPI_Comm comm; /* borrowed */
@@ -198,24 +198,71 @@ static void place_rows(MPI_Comm comm, int64_t rows, int64_t *first,
   *first -= rows;
 }
 
+/* A dataset while it is written. */
+struct table {
+  hid_t set, space;
+  enum hdf5_type type;
+  int columns;
+  int64_t first; /* row of all that this rank begins with */
+};
+
+static struct table table_create(struct hdf5_file *file, const char *name,
+                                 enum hdf5_type type, int64_t rows,
+                                 int columns) {
+  struct table table = {.type = type, .columns = columns};
+  int64_t all;
+  place_rows(file->comm, rows, &table.first, &all);
+  hsize_t size[2] = {(hsize_t)all, (hsize_t)columns};
+  table.space =
+      H5_CHECK(file, H5Screate_simple(columns == 1 ? 1 : 2, size, NULL));
+  table.set =
+      H5_CHECK(file, H5Dcreate2(file->id, name, memory_type(type), table.space,
+                                H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  /* parallel HDF5 has its place from the start */
+  haddr_t begin = H5Dget_offset(table.set);
+  if (begin != HADDR_UNDEF)
+    reserve(file, begin, H5Dget_storage_size(table.set));
+  return table;
+}
+
+/* Rows [first, first + rows) of those of this rank. */
+static void table_write(struct hdf5_file *file, const struct table *table,
+                        int64_t first, int64_t rows, const void *data) {
+  hid_t memory = select_rows(file, table->space, table->first + first, rows,
+                             table->columns);
+  H5_CHECK(file, H5Dwrite(table->set, memory_type(table->type), memory,
+                          table->space, file->transfer, data));
+  H5_CHECK(file, H5Sclose(memory));
+}
+
+static void table_close(struct hdf5_file *file, struct table *table) {
+  H5_CHECK(file, H5Dclose(table->set));
+  H5_CHECK(file, H5Sclose(table->space));
+}
+
 void hdf5_write(struct hdf5_file *file, const char *name, enum hdf5_type type,
                 int64_t rows, int columns, const void *data) {
-  int64_t first, all;
-  place_rows(file->comm, rows, &first, &all);
-  hsize_t size[2] = {(hsize_t)all, (hsize_t)columns};
-  hid_t space =
-      H5_CHECK(file, H5Screate_simple(columns == 1 ? 1 : 2, size, NULL));
-  hid_t set =
-      H5_CHECK(file, H5Dcreate2(file->id, name, memory_type(type), space,
-                                H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  haddr_t begin = H5Dget_offset(set); /* parallel HDF5 has it from the start */
-  if (begin != HADDR_UNDEF) reserve(file, begin, H5Dget_storage_size(set));
-  hid_t memory = select_rows(file, space, first, rows, columns);
-  H5_CHECK(file, H5Dwrite(set, memory_type(type), memory, space, file->transfer,
-                          data));
-  H5_CHECK(file, H5Sclose(memory));
-  H5_CHECK(file, H5Dclose(set));
-  H5_CHECK(file, H5Sclose(space));
+  struct table table = table_create(file, name, type, rows, columns);
+  table_write(file, &table, 0, rows, data);
+  table_close(file, &table);
+}
+
+void hdf5_write_pieces(struct hdf5_file *file, const char *name,
+                       enum hdf5_type type, int64_t rows, int columns,
+                       hdf5_fill *fill, void *context) {
+  const int64_t most = PIECE_LENGTH / columns;
+  struct table table = table_create(file, name, type, rows, columns);
+  double *data = MEM_NEW(double, PIECE_LENGTH); /* no type is wider */
+  int64_t end;
+  MPI_CHECK(MPI_Allreduce(&rows, &end, 1, MPI_INT64_T, MPI_MAX, file->comm));
+  for (int64_t first = 0; first < end; first += most) {
+    const int64_t left = rows > first ? rows - first : 0;
+    const int64_t n = left < most ? left : most;
+    if (n > 0) fill(context, first, n, data);
+    table_write(file, &table, n > 0 ? first : 0, n, data);
+  }
+  mem_free(data);
+  table_close(file, &table);
 }
 
 bool hdf5_read_size(struct hdf5_file *file, const char *name, int64_t *rows,

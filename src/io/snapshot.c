@@ -48,25 +48,6 @@ static void describe_fields(const struct fields *fields,
   }
 }
 
-/* Values of a field on leaves, into every `columns`-th place of v. */
-static void cell_values(const struct mesh *mesh, const struct field *field,
-                        int columns, double *v) {
-  if (field->location == FIELD_CELL) {
-    for (int32_t i = 0; i < mesh->nleaves; i++)
-      v[(int64_t)i * columns] = field->v[i];
-    return;
-  }
-  double *copy = MEM_NEW(double, (size_t)mesh->nfaces_all);
-  memcpy(copy, field->v, sizeof(double) * (size_t)mesh->nfaces_all);
-  mesh_fill_faces(mesh, 1, &copy); /* the run must not notice a snapshot */
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double sum = 0;
-    for (int f = 0; f < NFACE; f++) sum += copy[mesh->cell_face[i][f]];
-    v[(int64_t)i * columns] = sum / NFACE;
-  }
-  mem_free(copy);
-}
-
 /* The part of a vector along axis d, NULL if there is none. */
 static const struct field *find_component(const struct fields *fields,
                                           const char *vector, int d) {
@@ -75,30 +56,90 @@ static const struct field *find_component(const struct fields *fields,
   return fields_find(fields, name);
 }
 
-static void write_array(struct hdf5_file *file, const struct mesh *mesh,
-                        const struct fields *fields,
-                        const struct xdmf_array *array) {
-  double *v = MEM_NEW(double, (size_t)mesh->nleaves *(size_t)array->columns);
-  const struct field *first = array->columns == 1
-                                  ? fields_find(fields, array->name)
-                                  : find_component(fields, array->name, 0);
-  cell_values(mesh, first, array->columns, v);
-  for (int d = 1; d < DIM && array->columns > 1; d++) {
-    const struct field *part = find_component(fields, array->name, d);
-    if (part != NULL) cell_values(mesh, part, array->columns, v + d);
+struct vector {
+  const struct field *part[3]; /* NULL: 0 */
+};
+
+static void fill_vector(void *context, int64_t first, int64_t n, void *data) {
+  const struct vector *vector = context;
+  double(*v)[3] = data;
+  for (int d = 0; d < 3; d++) {
+    const struct field *part = vector->part[d];
+    for (int64_t i = 0; i < n; i++) v[i][d] = part ? part->v[first + i] : 0;
   }
-  hdf5_write(file, array->name, HDF5_REAL, mesh->nleaves, array->columns, v);
-  hdf5_write_text(file, array->name, "unit", first->unit);
-  hdf5_write_text(file, array->name, "title", first->title);
+}
+
+/* Means over the sides of the leaves; the run must not notice a snapshot, so
+ * that what mesh_fill_faces changes is a copy. */
+static void write_sides(struct hdf5_file *file, const struct mesh *mesh,
+                        const struct field *field) {
+  const size_t nfaces = (size_t)mesh->nfaces_all;
+  double *v = MEM_NEW(double, (size_t)mesh->nleaves);
+  double *copy = MEM_NEW(double, nfaces);
+  memcpy(copy, field->v, sizeof(double) * nfaces);
+  mesh_fill_faces(mesh, 1, &copy);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int f = 0; f < NFACE; f++) v[i] += copy[mesh->cell_face[i][f]];
+    v[i] /= NFACE;
+  }
+  hdf5_write(file, field->name, HDF5_REAL, mesh->nleaves, 1, v);
+  mem_free(copy);
   mem_free(v);
 }
 
-static void write_mesh(struct hdf5_file *file, const struct mesh *mesh) {
+static void write_array(struct hdf5_file *file, const struct mesh *mesh,
+                        const struct fields *fields,
+                        const struct xdmf_array *array) {
+  struct vector vector = {{NULL}};
+  const struct field *first = array->columns == 1
+                                  ? fields_find(fields, array->name)
+                                  : find_component(fields, array->name, 0);
+  if (array->columns > 1) {
+    for (int d = 0; d < DIM; d++)
+      vector.part[d] = find_component(fields, array->name, d);
+    hdf5_write_pieces(file, array->name, HDF5_REAL, mesh->nleaves, 3,
+                      fill_vector, &vector);
+  } else if (first->location == FIELD_FACE) {
+    write_sides(file, mesh, first);
+  } else {
+    hdf5_write(file, array->name, HDF5_REAL, mesh->nleaves, 1, first->v);
+  }
+  hdf5_write_text(file, array->name, "unit", first->unit);
+  hdf5_write_text(file, array->name, "title", first->title);
+}
+
+struct corners {
+  const struct mesh *mesh;
   struct vertices vertices;
-  vertices_find(mesh, &vertices);
-  hdf5_write(file, "vertices", HDF5_REAL, vertices.n, DIM, vertices.x);
-  hdf5_write(file, "cells", HDF5_INT64, mesh->nleaves, NCHILD, vertices.cell);
-  vertices_free(&vertices);
+  int32_t leaf; /* where vertices_place is */
+};
+
+static void fill_vertices(void *context, int64_t first, int64_t n, void *data) {
+  struct corners *corners = context;
+  vertices_place(corners->mesh, &corners->vertices, first, n, &corners->leaf,
+                 data);
+}
+
+static void fill_cells(void *context, int64_t first, int64_t n, void *data) {
+  const struct vertices *vertices = &((struct corners *)context)->vertices;
+  int64_t(*cell)[NCHILD] = data;
+  for (int64_t i = 0; i < n; i++) {
+    for (int k = 0; k < NCHILD; k++) {
+      /* VTK goes round the lower face, then round the upper one */
+      const int corner = (k & 2) != 0 ? k ^ 1 : k;
+      cell[i][k] = vertices->first + vertices->cell[first + i][corner];
+    }
+  }
+}
+
+static void write_mesh(struct hdf5_file *file, const struct mesh *mesh) {
+  struct corners corners = {.mesh = mesh};
+  vertices_find(mesh, &corners.vertices);
+  hdf5_write_pieces(file, "vertices", HDF5_REAL, corners.vertices.n, DIM,
+                    fill_vertices, &corners);
+  hdf5_write_pieces(file, "cells", HDF5_INT64, mesh->nleaves, NCHILD,
+                    fill_cells, &corners);
+  vertices_free(&corners.vertices);
   hdf5_write_text(file, "vertices", "unit", "m");
   hdf5_write_text(file, "vertices", "title", "corners of the leaves");
   hdf5_write_text(file, "cells", "unit", "1");

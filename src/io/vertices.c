@@ -1,81 +1,91 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Balance over corners lets every leaf at a vertex see all others there in its
+ * stencil: as they are, as part of an average, or by a virtual child. */
 #include "vertices.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdbool.h>
 
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
 
-/* A corner of a leaf: place in finest cells, leaf and corner. */
-struct corner {
-  int64_t place[DIM];
-  int32_t leaf, number;
-};
-
-static int compare_corners(const void *a, const void *b) {
-  const int64_t *p = ((const struct corner *)a)->place;
-  const int64_t *q = ((const struct corner *)b)->place;
-  for (int d = DIM - 1; d >= 0; d--)
-    if (p[d] != q[d]) return p[d] < q[d] ? -1 : 1;
-  return 0;
+/* Leaf of this rank with the same corner k as a node, or -1. */
+static int32_t leaf_at(const struct mesh *mesh, int32_t node, int k) {
+  while (node >= mesh->begin_average && node < mesh->begin_virtual) {
+    node = mesh->average_child[node - mesh->begin_average][k];
+  }
+  if (node >= mesh->begin_virtual && node < mesh->begin_boundary) {
+    const int32_t child = node - mesh->begin_virtual;
+    node = child % NCHILD == k ? mesh->virtual_leaf[child / NCHILD] : -1;
+  }
+  return node < mesh->nleaves ? node : -1;
 }
 
-/* VTK goes round the lower face, then round the upper one. */
-static int vtk_number(int corner) {
-  return (corner & 2) != 0 ? corner ^ 1 : corner;
+/* Is corner k of leaf i where corner l of leaf j is? Across a periodic side
+ * they are the box apart. */
+static bool same_place(const struct mesh *mesh, int32_t i, int k, int32_t j,
+                       int l) {
+  for (int d = 0; d < DIM; d++) {
+    const double p = mesh->x[i][d] + ((k >> d & 1) - 0.5) * mesh->h[i];
+    const double q = mesh->x[j][d] + ((l >> d & 1) - 0.5) * mesh->h[j];
+    if (fabs(p - q) > 0.25 * mesh->h[i]) return false;
+  }
+  return true;
 }
 
-static struct corner *list_corners(const struct mesh *mesh, double unit) {
-  const double *origin = forest_layout(mesh->forest)->origin;
-  struct corner *corner =
-      MEM_NEW(struct corner, (size_t)mesh->nleaves * NCHILD);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    for (int k = 0; k < NCHILD; k++) {
-      struct corner *c = &corner[(int64_t)i * NCHILD + k];
-      for (int d = 0; d < DIM; d++) {
-        double side = (k >> d & 1) != 0 ? 0.5 : -0.5;
-        double x = mesh->x[i][d] + side * mesh->h[i] - origin[d];
-        c->place[d] = llround(x / unit);
-      }
-      c->leaf = i;
-      c->number = vtk_number(k);
+/* Vertex at corner k of leaf i, if a leaf before it has it too, else -1. */
+static int32_t find_vertex(const struct mesh *mesh,
+                           const struct vertices *vertices, int32_t i, int k) {
+  for (int m = 1; m < NCHILD; m++) { /* axes along which the corner is passed */
+    int s = STENCIL_CENTRE;
+    for (int d = 0; d < DIM; d++) {
+      if (m >> d & 1) s += (k >> d & 1 ? 1 : -1) * stencil_step(d);
+    }
+    const int32_t j = leaf_at(mesh, mesh->stencil[i][s], k ^ m);
+    if (j >= 0 && j < i && same_place(mesh, i, k, j, k ^ m)) {
+      return vertices->cell[j][k ^ m];
     }
   }
-  return corner;
+  return -1;
 }
 
 void vertices_find(const struct mesh *mesh, struct vertices *vertices) {
-  const struct forest_layout *layout = forest_layout(mesh->forest);
-  const double unit = ldexp(layout->size, -mesh->level_finest);
-  const int64_t ncorners = (int64_t)mesh->nleaves * NCHILD;
-  struct corner *corner = list_corners(mesh, unit);
-  qsort(corner, (size_t)ncorners, sizeof *corner, compare_corners);
-
-  vertices->x = mem_alloc((size_t)ncorners, sizeof *vertices->x);
+  int32_t n = 0;
   vertices->cell = mem_alloc((size_t)mesh->nleaves, sizeof *vertices->cell);
-  int64_t n = 0;
-  for (int64_t k = 0; k < ncorners; k++) {
-    const struct corner *c = &corner[k];
-    if (k == 0 || compare_corners(c, c - 1) != 0) {
-      for (int d = 0; d < DIM; d++)
-        vertices->x[n][d] = layout->origin[d] + unit * (double)c->place[d];
-      n++;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int k = 0; k < NCHILD; k++) {
+      const int32_t vertex = find_vertex(mesh, vertices, i, k);
+      vertices->cell[i][k] = vertex >= 0 ? vertex : n++;
     }
-    vertices->cell[c->leaf][c->number] = n - 1;
   }
   vertices->n = n;
-  mem_free(corner);
-
-  int64_t first = 0;
-  MPI_CHECK(MPI_Scan(&n, &first, 1, MPI_INT64_T, MPI_SUM, mesh->comm));
-  first -= n;
-  for (int64_t k = 0; k < ncorners; k++)
-    vertices->cell[k / NCHILD][k % NCHILD] += first;
+  MPI_CHECK(MPI_Scan(&vertices->n, &vertices->first, 1, MPI_INT64_T, MPI_SUM,
+                     mesh->comm));
+  vertices->first -= n;
 }
 
-void vertices_free(struct vertices *vertices) {
-  mem_free(vertices->x);
-  mem_free(vertices->cell);
+void vertices_free(struct vertices *vertices) { mem_free(vertices->cell); }
+
+/* Corner k of leaf i, the same to the last bit whichever leaf is asked. */
+static void corner_place(const struct mesh *mesh, int32_t i, int k,
+                         double x[DIM]) {
+  const struct forest_layout *layout = forest_layout(mesh->forest);
+  const double unit = ldexp(layout->size, -mesh->level_finest);
+  for (int d = 0; d < DIM; d++) {
+    const double side = ((k >> d & 1) - 0.5) * mesh->h[i];
+    x[d] = layout->origin[d] +
+           unit * round((mesh->x[i][d] + side - layout->origin[d]) / unit);
+  }
+}
+
+void vertices_place(const struct mesh *mesh, const struct vertices *vertices,
+                    int64_t begin, int64_t n, int32_t *leaf, double (*x)[DIM]) {
+  for (int64_t next = 0; next < n;) {
+    for (int k = 0; k < NCHILD && next < n; k++) {
+      if (vertices->cell[*leaf][k] != begin + next) continue;
+      corner_place(mesh, *leaf, k, x[next++]);
+    }
+    if (next < n) (*leaf)++;
+  }
 }

@@ -7,15 +7,21 @@
 
 #include "talus/mesh.h"
 
+/* They are numbered in the order in which a walk over the leaves, and over the
+ * corners x + 2 y + 4 z of each, meets them. */
 struct vertices {
-  int64_t n;
-  double (*x)[DIM];        /* [n], m */
-  int64_t (*cell)[NCHILD]; /* [nleaves] vertices of each leaf, numbered over
-                              all ranks, in the order of VTK */
+  int64_t n;               /* of this rank */
+  int64_t first;           /* those of the ranks before it */
+  int32_t (*cell)[NCHILD]; /* [nleaves] vertex at each corner, of this rank */
 };
 
 /* Collective. */
 void vertices_find(const struct mesh *mesh, struct vertices *vertices);
 void vertices_free(struct vertices *vertices);
+
+/* Places of the vertices [begin, begin + n) into x [n], m. *leaf says where
+ * the walk is: 0 for the first call, later ones go on from the one before. */
+void vertices_place(const struct mesh *mesh, const struct vertices *vertices,
+                    int64_t begin, int64_t n, int32_t *leaf, double (*x)[DIM]);
 
 #endif

@@ -17,7 +17,15 @@ enum { CORNERS = 1 << DIM };
 struct xdmf {
   char *text; /* owned */
   size_t length, room;
+  size_t written; /* of the text, in the file */
 };
+
+static const char head[] =
+    "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n"
+    "<Xdmf Version=\"2.0\">\n  <Domain>\n"
+    "    <Grid Name=\"talus\" GridType=\"Collection\" "
+    "CollectionType=\"Temporal\">\n";
+static const char tail[] = "    </Grid>\n  </Domain>\n</Xdmf>\n";
 
 struct xdmf *xdmf_new(void) {
   return MEM_NEW(struct xdmf, 1);
@@ -87,23 +95,31 @@ void xdmf_add(struct xdmf *xdmf, const struct xdmf_grid *grid) {
   add(xdmf, "      </Grid>\n");
 }
 
-void xdmf_write(const struct xdmf *xdmf, const char *path) {
-  if (base_rank() != 0) return;
+/* The whole file anew, so that a reader never sees half of it. */
+static void replace(const struct xdmf *xdmf, const char *path) {
   size_t size = strlen(path) + 5;
   char *draft = MEM_NEW(char, size);
   snprintf(draft, size, "%s.tmp", path);
   FILE *f = fopen(draft, "w");
   if (f == NULL) FATAL("cannot write '%s': %s", draft, strerror(errno));
-  fprintf(f,
-          "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n"
-          "<Xdmf Version=\"2.0\">\n  <Domain>\n"
-          "    <Grid Name=\"talus\" GridType=\"Collection\" "
-          "CollectionType=\"Temporal\">\n");
-  if (xdmf->length > 0) fwrite(xdmf->text, 1, xdmf->length, f);
-  fprintf(f, "    </Grid>\n  </Domain>\n</Xdmf>\n");
+  fprintf(f, "%s%s%s", head, xdmf->text != NULL ? xdmf->text : "", tail);
   output_flush(f, draft);
   fclose(f);
   if (rename(draft, path) != 0)
     FATAL("cannot rename '%s' to '%s': %s", draft, path, strerror(errno));
   mem_free(draft);
+}
+
+void xdmf_write(struct xdmf *xdmf, const char *path) {
+  if (base_rank() != 0) return;
+  FILE *f = xdmf->written > 0 ? fopen(path, "r+") : NULL;
+  if (f == NULL) {
+    replace(xdmf, path);
+  } else {
+    fseek(f, (long)(strlen(head) + xdmf->written), SEEK_SET);
+    fprintf(f, "%s%s", xdmf->text + xdmf->written, tail);
+    output_flush(f, path);
+    fclose(f);
+  }
+  xdmf->written = xdmf->length;
 }

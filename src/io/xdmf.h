@@ -28,7 +28,8 @@ struct xdmf *xdmf_new(void);
 void xdmf_destroy(struct xdmf *xdmf);
 /* Add one time. Does something on rank 0 only, like xdmf_write. */
 void xdmf_add(struct xdmf *xdmf, const struct xdmf_grid *grid);
-/* Replace the file as a whole. */
-void xdmf_write(const struct xdmf *xdmf, const char *path);
+/* Write the file: first as a whole, then, as file systems are slow to replace
+ * one, what is new over the tags at its end. */
+void xdmf_write(struct xdmf *xdmf, const char *path);
 
 #endif

@@ -32,22 +32,29 @@ struct field *fields_find(const struct fields *fields, const char *name) {
   return NULL;
 }
 
-void fields_reset(struct fields *fields, const struct mesh *mesh) {
+void fields_release(struct fields *fields, bool all) {
   for (int k = 0; k < fields->n; k++) {
     struct field *field = fields->field[k];
-    mem_free(field->v);
     mem_free(field->saved);
     field->saved = NULL;
+    if (!all && field->remap != REMAP_NONE) continue;
+    mem_free(field->v);
+    field->v = NULL;
+  }
+}
+
+void fields_reset(struct fields *fields, const struct mesh *mesh) {
+  fields_release(fields, true);
+  for (int k = 0; k < fields->n; k++) {
+    struct field *field = fields->field[k];
+    if (field->on_demand) continue;
     field->v = MEM_NEW(double, field_length(field, mesh));
   }
 }
 
 void fields_destroy(struct fields *fields) {
-  for (int k = 0; k < fields->n; k++) {
-    mem_free(fields->field[k]->v);
-    mem_free(fields->field[k]->saved);
-    mem_free(fields->field[k]);
-  }
+  fields_release(fields, true);
+  for (int k = 0; k < fields->n; k++) mem_free(fields->field[k]);
   fields->n = 0;
 }
 
@@ -59,7 +66,7 @@ static size_t saved_length(const struct field *field, const struct mesh *mesh) {
 void fields_save(struct fields *fields, const struct mesh *mesh) {
   for (int k = 0; k < fields->n; k++) {
     struct field *field = fields->field[k];
-    if (!field->restart) continue;
+    if (!field->restart || field->old) continue;
     const size_t n = saved_length(field, mesh);
     if (!field->saved) field->saved = MEM_NEW(double, n);
     memcpy(field->saved, field->v, n * sizeof(double));
@@ -70,8 +77,9 @@ void fields_restore(struct fields *fields, const struct mesh *mesh) {
   for (int k = 0; k < fields->n; k++) {
     struct field *field = fields->field[k];
     if (!field->restart) continue;
-    CHECK(field->saved, "field '%s' was not saved", field->name);
-    memcpy(field->v, field->saved, saved_length(field, mesh) * sizeof(double));
+    const double *before = field->old ? field->old->v : field->saved;
+    CHECK(before, "field '%s' was not saved", field->name);
+    memcpy(field->v, before, saved_length(field, mesh) * sizeof(double));
   }
 }
 

@@ -148,7 +148,7 @@ static void set_geometry(struct builder *b) {
   mesh->x = mem_alloc((size_t)n, sizeof *mesh->x);
   mesh->h = MEM_NEW(double, n);
   mesh->volume = MEM_NEW(double, n);
-  table_begin(&b->table, 2 * (int64_t)n);
+  table_begin(&b->table, (int64_t)n + n / 4); /* leaves and helper nodes */
   for (int32_t i = 0; i < n; i++) {
     int64_t x[DIM];
     const double edge = (double)curve_edge(mesh->level[i]);

@@ -302,20 +302,34 @@ static void set_plans(struct mesh *mesh, const int32_t *average,
   }
 }
 
+/* Nodes by name. Leaves of one size are in each other's stencil, so half of
+ * them need no search. */
+static void find_nodes(struct builder *b) {
+  const struct mesh *mesh = b->mesh;
+  enum { UNKNOWN = 0xff };
+  memset(mesh->stencil, UNKNOWN, (size_t)mesh->nleaves * sizeof *mesh->stencil);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    int64_t x[DIM];
+    int32_t *node = mesh->stencil[i];
+    curve_coordinates(b->curve, mesh->key[i], x);
+    node[STENCIL_CENTRE] = i;
+    for (int s = 0; s < NSTENCIL; s++) {
+      if (node[s] >= 0) continue;
+      node[s] = stencil_node(b, x, s, mesh->level[i]);
+      if (node[s] < mesh->nleaves) {
+        mesh->stencil[node[s]][NSTENCIL - 1 - s] = i;
+      }
+    }
+  }
+}
+
 void build_stencils(struct builder *b) {
   struct mesh *mesh = b->mesh;
   const int32_t n = mesh->nleaves + mesh->nghosts;
   b->group_of = MEM_NEW(int32_t, n);
   for (int32_t i = 0; i < n; i++) b->group_of[i] = -1;
   mesh->stencil = mem_alloc((size_t)mesh->nleaves, sizeof *mesh->stencil);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    int64_t x[DIM];
-    curve_coordinates(b->curve, mesh->key[i], x);
-    for (int s = 0; s < NSTENCIL; s++) {
-      mesh->stencil[i][s] =
-          s == STENCIL_CENTRE ? i : stencil_node(b, x, s, mesh->level[i]);
-    }
-  }
+  find_nodes(b);
   plan_begin(&mesh->exchange->average, mesh->comm);
   plan_begin(&mesh->exchange->virtual_node, mesh->comm);
   if (mesh->nranks > 1) {

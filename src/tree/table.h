@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hash table from (64-bit key, tag) to a 32-bit value, open addressing. */
+/* Hash table from (64-bit key, tag) to a 32-bit value >= 0, open addressing. */
 #ifndef TALUS_TREE_TABLE_H
 #define TALUS_TREE_TABLE_H
 
@@ -10,7 +10,7 @@
 struct table_slot {
   uint64_t key;
   int32_t tag;
-  int32_t value; /* < 0: empty */
+  int32_t next_value; /* value + 1; 0: empty, as memory comes */
 };
 
 struct table {
@@ -30,7 +30,6 @@ static inline void table_begin(struct table *t, int64_t expected) {
   uint64_t size = 64;
   while (size < 2 * (uint64_t)expected) size *= 2;
   t->slot = MEM_NEW(struct table_slot, size);
-  for (uint64_t i = 0; i < size; i++) t->slot[i].value = -1;
   t->mask = size - 1;
   t->n = 0;
 }
@@ -41,7 +40,7 @@ static inline void table_end(struct table *t) { mem_free(t->slot); }
 static inline struct table_slot *table_place(const struct table *t,
                                              uint64_t key, int32_t tag) {
   uint64_t i = table_hash(key, tag) & t->mask;
-  while (t->slot[i].value >= 0 &&
+  while (t->slot[i].next_value != 0 &&
          (t->slot[i].key != key || t->slot[i].tag != tag)) {
     i = (i + 1) & t->mask;
   }
@@ -51,7 +50,7 @@ static inline struct table_slot *table_place(const struct table *t,
 /* Value of (key, tag), or -1. */
 static inline int32_t table_find(const struct table *t, uint64_t key,
                                  int32_t tag) {
-  return table_place(t, key, tag)->value;
+  return table_place(t, key, tag)->next_value - 1;
 }
 
 static inline void table_insert(struct table *t, uint64_t key, int32_t tag,
@@ -60,7 +59,7 @@ static inline void table_insert(struct table *t, uint64_t key, int32_t tag,
     struct table old = *t;
     table_begin(t, 2 * (old.n + 1));
     for (uint64_t i = 0; i <= old.mask; i++) {
-      if (old.slot[i].value >= 0) {
+      if (old.slot[i].next_value != 0) {
         *table_place(t, old.slot[i].key, old.slot[i].tag) = old.slot[i];
         t->n++;
       }
@@ -68,7 +67,7 @@ static inline void table_insert(struct table *t, uint64_t key, int32_t tag,
     table_end(&old);
   }
   *table_place(t, key, tag) =
-      (struct table_slot){.key = key, .tag = tag, .value = value};
+      (struct table_slot){.key = key, .tag = tag, .next_value = value + 1};
   t->n++;
 }
 

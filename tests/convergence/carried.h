@@ -113,7 +113,7 @@ static inline void carried_step(struct carried *c) {
 /* Integral of |c - exact| over the box. */
 static inline double carried_error(struct carried *c) {
   struct simulation *sim = c->sim;
-  double *error = sim->c_old->v;
+  double *error = sim->cell[0]->v;
   carried_shape(c, error);
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     error[i] = fabs(error[i] - sim->c->v[i]);

@@ -79,7 +79,7 @@ static double wrapped_square(void *context, const double x[3]) {
 /* Part of the square's area that is not where it should be. */
 static double shape_error(struct simulation *sim, const struct track *to) {
   struct body body = start;
-  double *error = sim->c_old->v;
+  double *error = sim->cell[0]->v;
   for (int d = 0; d < 2; d++) body.centre[d] = to->centre[d];
   fill_shape(sim->mesh, wrapped_square, &body, error);
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {

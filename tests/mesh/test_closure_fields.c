@@ -60,6 +60,7 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
       wrong[k] = fmax(wrong[k], fabs(sim->known[k]->v[i] - exact));
     }
   }
+  closure_fields_release(sim);
   cells = mesh_sum(sim->mesh, cells);
   gas = mesh_sum(sim->mesh, gas);
   wrong_rate = mesh_max(sim->mesh, wrong_rate);

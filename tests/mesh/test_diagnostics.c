@@ -232,8 +232,6 @@ static struct simulation *state_new(struct world *w, struct params *params) {
   for (int d = 0; d < DIM; d++)
     sim->u[d] = fields_add(&sim->fields, w->mesh, name[d], "m/s", "velocity",
                            FIELD_CELL, REMAP_LINEAR);
-  sim->shear_rate = fields_add(&sim->fields, w->mesh, "shear_rate", "1/s",
-                               "shear rate", FIELD_CELL, REMAP_NONE);
   return sim;
 }
 

@@ -69,6 +69,42 @@ START_TEST(rows_of_all_ranks_follow_each_other) {
 }
 END_TEST
 
+/* Rows of the number and place of each rank, made where *context says. */
+static void fill_rows(void *context, int64_t first, int64_t n, void *data) {
+  int64_t *next = context;
+  int64_t(*row)[3] = data;
+  for (int64_t i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++)
+      row[i][k] =
+          first == *next ? 1000000 * base_rank() + 10 * (first + i) + k : -1;
+  *next = first + n;
+}
+
+/* More rows than are written at once, fewer on later ranks, none on the last
+ * of three. */
+START_TEST(rows_written_in_pieces_are_all_there) {
+  enum { MOST = 50000 };
+  const char *path = path_of("pieces.h5");
+  const int64_t n = base_rank() == 2 ? 0 : MOST - 20000 * base_rank();
+  int64_t next = 0, all = 0;
+  int columns = 0;
+  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path);
+  hdf5_write_pieces(file, "data", HDF5_INT64, n, 3, fill_rows, &next);
+  hdf5_close(file, false);
+  file = hdf5_open(MPI_COMM_WORLD, path);
+  bool good = next == n && hdf5_read_size(file, "data", &all, &columns) &&
+              all == MOST + (base_size() > 1 ? MOST - 20000 : 0);
+  int64_t(*back)[3] = mem_alloc((size_t)n, sizeof *back);
+  hdf5_read(file, "data", HDF5_INT64, base_rank() == 1 ? MOST : 0, n, 3, back);
+  hdf5_close(file, false);
+  for (int64_t i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++)
+      good = good && back[i][k] == 1000000 * base_rank() + 10 * i + k;
+  mem_free(back);
+  ck_assert(all_ranks(good));
+}
+END_TEST
+
 START_TEST(attributes_come_back) {
   const char *path = path_of("attributes.h5");
   const double real[2] = {0.1, -1e300}, one = 1.0 / 3;
@@ -279,6 +315,18 @@ static double quad_area(const double (*x)[DIM], const int64_t *cell) {
   return area;
 }
 
+static int compare_places(const void *a, const void *b) {
+  return memcmp(a, b, sizeof(double[DIM]));
+}
+
+/* Is no vertex listed twice? Those of several ranks are. */
+static bool all_differ(int64_t n, double (*x)[DIM]) {
+  bool good = true;
+  qsort(x, (size_t)n, sizeof *x, compare_places);
+  for (int64_t i = 1; i < n; i++) good = good && compare_places(x[i - 1], x[i]);
+  return good;
+}
+
 static bool cells_are_sound(struct hdf5_file *file, int64_t leaves,
                             int64_t *nvertices) {
   int64_t n = 0;
@@ -302,6 +350,9 @@ static bool cells_are_sound(struct hdf5_file *file, int64_t leaves,
       good = good && fabs(x[cell[i][NCHILD - 4]][DIM - 1] -
                           x[cell[i][0]][DIM - 1] - h) < 1e-12;
   }
+  int nranks;
+  MPI_CHECK(MPI_Comm_size(hdf5_comm(file), &nranks));
+  good = good && (nranks > 1 || all_differ(*nvertices, x));
   mem_free(x);
   mem_free(cell);
   mem_free(level);
@@ -351,9 +402,10 @@ static bool snapshot_is_sound(struct forest *forest, int64_t *nvertices) {
 }
 
 START_TEST(snapshots_share_vertices_and_go_round_as_vtk_wants) {
-  for (int adapted = 0; adapted < 2; adapted++) {
+  for (int kind = 0; kind < 4; kind++) {
+    const bool adapted = kind & 1, periodic = kind & 2;
     struct forest *forest =
-        grid_new(MPI_COMM_WORLD, 2, false, 2, adapted ? 4 : 2);
+        grid_new(MPI_COMM_WORLD, 2, periodic, 2, adapted ? 4 : 2);
     struct mesh *mesh = mesh_new(forest);
     struct fields fields = {.n = 0};
     add_vector(&fields, mesh);
@@ -435,6 +487,7 @@ Suite *io_suite(void) {
   TCase *tcase = tcase_create("files");
   tcase_add_checked_fixture(tcase, make_directory, remove_directory);
   tcase_add_test(tcase, rows_of_all_ranks_follow_each_other);
+  tcase_add_test(tcase, rows_written_in_pieces_are_all_there);
   tcase_add_test(tcase, attributes_come_back);
   tcase_add_test(tcase, damaged_files_are_not_opened);
   tcase_add_test(tcase, checkpoint_restores_every_bit_and_the_partition);
