@@ -8,9 +8,10 @@
  * M may change from one call to the next [eisenstat_1983]. The inner product
  * is <a, b> = sum_i s_i a_i b_i with weights s given by the caller; s_i =
  * 1 / A_ii^2 measures a residual by the correction it asks for, without which
- * coefficients that differ by 1e4 or more stop the convergence. The test is
- * on max |t_i r_i| with a scale t of its own; a guess must pass it a million
- * times better to need no iteration.
+ * coefficients that differ by 1e4 or more stop the convergence (s_i = 1 / A_ii:
+ * 15 % fewer iterations in a collapse with eta_max = 1e4, but discs of contrast
+ * 1e6 do not converge). The test is on max |t_i r_i| with a scale t of its own;
+ * a guess must pass it a million times better to need no iteration.
  */
 #ifndef TALUS_KRYLOV_H
 #define TALUS_KRYLOV_H

@@ -40,6 +40,6 @@ struct solve_stats poisson_solve(const struct mesh *mesh,
 /* flux [nfaces_all] = alpha dp/dn on all faces; p [ncells] filled.
  * Collective. */
 void poisson_flux(const struct mesh *mesh, const double *alpha_f,
-                  const double *p, double *flux);
+                  const double *p, double *restrict flux);
 
 #endif

@@ -7,28 +7,26 @@
 #include "levels.h"
 #include "talus/forest.h"
 
-/* q = A p. */
-static void apply(const struct hierarchy *h, const double *p, double *q) {
-  const int nparts = h->nparts;
+/* q = A p for component c. */
+static void apply(const struct hierarchy *h, int c, const double *p,
+                  double *q) {
+  const double *inverse = h->inverse[c];
   for (int32_t i = 0; i < h->level[0].nowned; i++) {
-    for (int c = 0; c < nparts; c++) {
-      const int32_t k = i * nparts + c;
-      double sum = h->inverse[k] > 0 ? p[k] / h->inverse[k] : 0;
-      for (int f = 0; f < NFACE; f++) {
-        const int twice = nparts > 1 && c == f >> 1 ? 2 : 1;
-        sum -= twice * h->w[i][f] * p[h->neighbour[i][f] * nparts + c];
-      }
-      q[k] = sum;
+    double sum = inverse[i] > 0 ? p[i] / inverse[i] : 0;
+    for (int f = 0; f < NFACE; f++) {
+      const int twice = h->nparts > 1 && c == f >> 1 ? 2 : 1;
+      if (h->w[f][i] > 0) sum -= twice * h->w[f][i] * p[h->neighbour[f][i]];
     }
+    q[i] = sum;
   }
 }
 
-void coarse_solve(struct hierarchy *h) {
-  const int32_t n = h->level[0].nowned * h->nparts;
+static void solve(struct hierarchy *h, int c) {
+  const int32_t n = h->level[0].nowned;
   const struct forest_layout *layout = forest_layout(h->mesh->forest);
   int most = 8;
   for (int d = 0; d < DIM; d++) most += 2 * layout->trees[d];
-  double *e = h->e, *r = h->r; /* trees have the first slots */
+  double *e = h->e[c], *r = h->r[c]; /* trees have the first slots */
   double *z = h->coarse[0], *p = h->coarse[1], *q = h->coarse[2];
   double rz_old = 0, rz_first = 0;
   memset(p, 0, (size_t)n * sizeof *p);
@@ -36,14 +34,14 @@ void coarse_solve(struct hierarchy *h) {
   for (int iteration = 0; iteration < most; iteration++) {
     double rz = 0, pq = 0;
     for (int32_t k = 0; k < n; k++) {
-      z[k] = h->inverse[k] * r[k];
+      z[k] = h->inverse[c][k] * r[k];
       rz += r[k] * z[k];
     }
     if (iteration == 0) rz_first = rz;
     if (!(rz > 1e-6 * rz_first)) break;
     const double beta = iteration > 0 ? rz / rz_old : 0;
     for (int32_t k = 0; k < n; k++) p[k] = z[k] + beta * p[k];
-    apply(h, p, q);
+    apply(h, c, p, q);
     for (int32_t k = 0; k < n; k++) pq += p[k] * q[k];
     if (!(pq > 1e-14 * rz)) break; /* only the constant is left */
     const double a = rz / pq;
@@ -53,4 +51,8 @@ void coarse_solve(struct hierarchy *h) {
     }
     rz_old = rz;
   }
+}
+
+void coarse_solve(struct hierarchy *h) {
+  for (int c = 0; c < h->nparts; c++) solve(h, c);
 }

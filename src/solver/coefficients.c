@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Coefficients of the two-point operator on all levels. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "levels.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
+#include "talus/minmax.h"
 
 /* Conductance of a wall over that between two cells. */
 static double wall_factor(const struct bc *bc, double h) {
@@ -19,105 +21,123 @@ static double wall_factor(const struct bc *bc, double h) {
   }
 }
 
-/* Leaves: sides into w, mass and walls into arrays of slots. */
+/* Leaves: sides into w, mass [slots]. */
 static void set_leaves(struct hierarchy *h, const double *alpha_f,
                        double factor, const double *mass_density,
-                       const struct bc *const bc[], double *mass,
-                       double *wall) {
+                       double *mass) {
   const struct mesh *mesh = h->mesh;
-  const int nparts = h->nparts;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t s = h->leaf_slot[i];
-    const double size = mesh->h[i];
-    const double ratio = factor * mesh->volume[i] / (size * size);
-    for (int f = 0; f < NFACE; f++) {
-      const int32_t face = mesh->cell_face[i][f];
-      const int patch = face < mesh->nfaces ? mesh->face_patch[face] : -1;
-      const double g = ratio * alpha_f[face];
-      h->w[s][f] = g;
-      if (patch < 0) continue;
-      for (int c = 0; c < nparts; c++) {
-        const int twice = nparts > 1 && c == f >> 1 ? 2 : 1;
-        wall[s * nparts + c] += twice * g * wall_factor(&bc[c][patch], size);
-      }
-    }
+    const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
+    const double ratio = factor * mesh->volume[i] / (mesh->h[i] * mesh->h[i]);
+    for (int f = 0; f < NFACE; f++) h->w[f][s] = ratio * alpha_f[face[f]];
     mass[s] = mass_density ? mass_density[i] * mesh->volume[i] : 0;
   }
 }
 
-/* Level l to level l - 1: sides and walls of children in parallel, over twice
- * the distance; masses add up. */
-static void merge_level(struct hierarchy *h, int l, double *mass,
-                        double *wall) {
-  const struct level *level = &h->level[l];
-  const int nparts = h->nparts;
-  for (int32_t k = 0; k < level->nfamilies; k++) {
-    const int32_t p = h->family_parent[level->family_begin + k];
-    for (int c = 0; c < NCHILD; c++) {
-      const int32_t i = family_slot(level, k, c);
-      for (int d = 0; d < DIM; d++) {
-        const int f = 2 * d + (c >> d & 1);
-        h->w[p][f] += 0.5 * h->w[i][f];
-      }
-      mass[p] += mass[i];
-      for (int q = 0; q < nparts; q++) {
-        wall[p * nparts + q] += 0.5 * wall[i * nparts + q];
+/* Conductance to the walls, of leaves that have one, into wall[c] [slots]. */
+static void set_walls(struct hierarchy *h, const struct bc *const bc[],
+                      double *const wall[]) {
+  const struct mesh *mesh = h->mesh;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int patch = mesh->face_patch[f];
+      if (patch < 0) continue;
+      const int upper = mesh->face_leaf[f][0] >= 0;
+      const int32_t i = mesh->face_leaf[f][!upper], s = h->leaf_slot[i];
+      const double g = h->w[2 * d + upper][s];
+      for (int c = 0; c < h->nparts; c++) {
+        const int twice = h->nparts > 1 && c == d ? 2 : 1;
+        wall[c][s] += twice * g * wall_factor(&bc[c][patch], mesh->h[i]);
       }
     }
   }
 }
 
-static void add_ghosts(struct hierarchy *h, int l, double *mass, double *wall) {
-  double *w = &h->w[0][0];
-  plan_run(&h->level[l].add, 1, &w, NFACE, true);
+/* Level l to level l - 1: sides of children in parallel, over twice the
+ * distance. Slopes inside a family from values outside are kept small where
+ * what is inside is stiffer than the side between. */
+static void merge_sides(struct hierarchy *h, int l) {
+  const struct level *level = &h->level[l];
+  const int32_t n = level->nfamilies;
+  const int32_t *parent = h->family_parent + level->family_begin;
+  for (int f = 0; f < NFACE; f++) {
+    const int d = f >> 1;
+    const double *w = h->w[f], *within = h->w[2 * d + 1];
+    float *limit = h->limit[f] + level->family_begin;
+    for (int32_t k = 0; k < n; k++) {
+      double in = 0, out = 0;
+#pragma GCC unroll 8
+      for (int c = 0; c < NCHILD; c++) {
+        const int32_t i = family_slot(level, k, c);
+        if ((c >> d & 1) == (f & 1)) out += 0.5 * w[i];
+        if ((c >> d & 1) == 0) in += 0.5 * within[i];
+      }
+      h->w[f][parent[k]] = out;
+      limit[k] = (float)(out / max2(max2(in, out), DBL_MIN));
+    }
+  }
+}
+
+/* Masses add up, walls are in parallel like sides. */
+static void merge_cells(struct hierarchy *h, int l, double *mass,
+                        double *const wall[]) {
+  const struct level *level = &h->level[l];
+  const int32_t *parent = h->family_parent + level->family_begin;
+  for (int32_t k = 0; k < level->nfamilies; k++) {
+    double sum = 0;
+    for (int c = 0; c < NCHILD; c++) sum += mass[family_slot(level, k, c)];
+    mass[parent[k]] = sum;
+  }
+  for (int c = 0; c < h->nparts; c++) {
+    for (int32_t k = 0; k < level->nfamilies; k++) {
+      double sum = 0;
+      for (int q = 0; q < NCHILD; q++) sum += wall[c][family_slot(level, k, q)];
+      wall[c][parent[k]] = 0.5 * sum;
+    }
+  }
+}
+
+static void add_ghosts(struct hierarchy *h, int l, double *mass,
+                       double *const wall[]) {
+  plan_run(&h->level[l].add, NFACE, h->w, 1, true);
   plan_run(&h->level[l].add, 1, &mass, 1, true);
-  plan_run(&h->level[l].add, 1, &wall, h->nparts, true);
-}
-
-/* Slopes inside a family from values outside are kept small where what is
- * inside is stiffer than the side between. */
-static void set_limits(struct hierarchy *h, int l) {
-  const struct level *level = &h->level[l];
-  for (int32_t k = 0; k < level->nfamilies; k++) {
-    const int32_t p = h->family_parent[level->family_begin + k];
-    float *limit = h->limit[level->family_begin + k];
-    double inside[DIM] = {0};
-    for (int c = 0; c < NCHILD; c++) {
-      const double *w = h->w[family_slot(level, k, c)];
-      for (int d = 0; d < DIM; d++) {
-        inside[d] += (c >> d & 1) ? 0 : 0.5 * w[2 * d + 1];
-      }
-    }
-    for (int f = 0; f < NFACE; f++) {
-      const double in = inside[f >> 1], out = h->w[p][f];
-      limit[f] = in > out ? (float)(out / in) : 1;
-    }
-  }
+  plan_run(&h->level[l].add, h->nparts, wall, 1, true);
 }
 
 /* Walls have no neighbour: they are in the diagonal. */
 static void clear_sides(struct hierarchy *h) {
   for (int32_t k = 0; k < h->nsides; k++) {
     for (int f = 0; f < NFACE; f++) {
-      if (h->sides[k].patch[f] >= 0) h->w[h->sides[k].slot][f] = 0;
+      if (h->sides[k].patch[f] >= 0) h->w[f][h->sides[k].slot] = 0;
+    }
+  }
+  /* A tree that is its own neighbour has no flux. */
+  for (int32_t i = 0; i < h->level[0].nowned; i++) {
+    for (int f = 0; f < NFACE; f++) {
+      if (h->neighbour[f][i] == i) h->w[f][i] = 0;
     }
   }
 }
 
-static void set_inverse(struct hierarchy *h, const double *mass,
-                        const double *wall) {
-  const int nparts = h->nparts;
-  for (int32_t i = 0; i < h->nowned; i++) {
-    double sum = mass[i];
-    for (int f = 0; f < NFACE; f++) sum += h->w[i][f];
-    for (int c = 0; c < nparts; c++) {
-      double diagonal = sum + wall[i * nparts + c];
-      if (nparts > 1) diagonal += h->w[i][2 * c] + h->w[i][2 * c + 1];
-      h->inverse[i * nparts + c] = diagonal > 0 ? 1 / diagonal : 0;
+/* Of the mass, overwritten, walls and sides. */
+static void set_inverse(struct hierarchy *h, double *restrict mass,
+                        double *const wall[]) {
+  for (int f = 0; f < NFACE; f++) {
+    for (int32_t i = 0; i < h->nowned; i++) mass[i] += h->w[f][i];
+  }
+  for (int c = 0; c < h->nparts; c++) {
+    const double twice = h->nparts > 1 ? 1 : 0; /* the normal stress */
+    const double *lower = h->w[2 * c], *upper = h->w[2 * c + 1];
+    double *restrict inverse = h->inverse[c];
+    for (int32_t i = 0; i < h->nowned; i++) {
+      const double diagonal =
+          mass[i] + wall[c][i] + twice * (lower[i] + upper[i]);
+      const double a = 1 / max2(diagonal, DBL_MIN);
+      inverse[i] = diagonal > 0 ? a : 0;
     }
   }
   for (int l = 0; l < h->nlevels; l++) {
-    plan_run(&h->level[l].copy, 1, &h->inverse, nparts, false);
+    plan_run(&h->level[l].copy, h->nparts, h->inverse, 1, false);
   }
 }
 
@@ -136,12 +156,11 @@ static void set_beyond(struct hierarchy *h, const struct bc *const bc[]) {
 
 static void set_weights(struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
-  const int nparts = h->nparts;
-  for (int c = 0; c < nparts; c++) {
+  for (int c = 0; c < h->nparts; c++) {
     double *weight = h->weight + (int64_t)c * mesh->nleaves;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      const double d = h->inverse[h->leaf_slot[i] * nparts + c];
-      weight[i] = d * d * mesh->volume[i] * mesh->volume[i];
+      const double d = h->inverse[c][h->leaf_slot[i]] * mesh->volume[i];
+      weight[i] = d * d;
     }
   }
 }
@@ -149,25 +168,22 @@ static void set_weights(struct hierarchy *h) {
 void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
                       double factor, const double *mass_density,
                       const struct bc *const bc[]) {
-  double *mass = h->e, *wall = h->r; /* free for now */
+  double *mass = h->e[0], *const *wall = h->r; /* free for now */
+  const size_t size = (size_t)h->nslots * sizeof(double);
   h->nparts = nparts;
   h->ncycles = h->rough_sweeps = 0;
-  memset(h->w, 0, (size_t)h->nslots * sizeof *h->w);
-  memset(mass, 0, (size_t)h->nslots * sizeof *mass);
-  memset(wall, 0, (size_t)(h->nslots * nparts) * sizeof *wall);
-  set_leaves(h, alpha_f, factor, mass_density, bc, mass, wall);
+  for (int c = 0; c < nparts; c++) memset(wall[c], 0, size);
+  /* what other ranks have merged is added */
+  for (int f = 0; f < NFACE && h->nranks > 1; f++) memset(h->w[f], 0, size);
+  if (h->nranks > 1) memset(mass, 0, size);
+  set_leaves(h, alpha_f, factor, mass_density, mass);
+  set_walls(h, bc, wall);
   for (int l = h->nlevels - 1; l >= 0; l--) {
     add_ghosts(h, l, mass, wall);
-    merge_level(h, l, mass, wall);
+    merge_sides(h, l);
+    merge_cells(h, l, mass, wall);
   }
-  for (int l = 1; l < h->nlevels; l++) set_limits(h, l);
   clear_sides(h);
-  /* A tree that is its own neighbour has no flux. */
-  for (int32_t i = 0; i < h->level[0].nowned; i++) {
-    for (int f = 0; f < NFACE; f++) {
-      if (h->neighbour[i][f] == i) h->w[i][f] = 0;
-    }
-  }
   set_inverse(h, mass, wall);
   set_beyond(h, bc);
   set_weights(h);

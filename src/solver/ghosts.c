@@ -77,20 +77,20 @@ static void resolve_links(struct linking *k, struct questions *q) {
     if (!k->wanted[i]) continue;
     int offset[DIM];
     for (int f = 0; f < NFACE; f++) {
-      if (h->neighbour[i][f] != SLOT_UNKNOWN) continue;
+      if (h->neighbour[f][i] != SLOT_UNKNOWN) continue;
       links_face_offset(f, offset);
       if (linking_place(k, k->key[i], k->level_of[i], offset, &key)) {
         h->wall[i] = (uint8_t)(h->wall[i] | 1 << f);
-        h->neighbour[i][f] = i;
+        h->neighbour[f][i] = i;
       } else {
-        h->neighbour[i][f] = resolve(k, q, key, k->level_of[i]);
+        h->neighbour[f][i] = resolve(k, q, key, k->level_of[i]);
       }
     }
     for (int e = 0; e < NCORNER; e++) {
-      if (h->corner[i][e] != SLOT_UNKNOWN) continue;
+      if (h->corner[e][i] != SLOT_UNKNOWN) continue;
       links_corner_offset(e, offset);
       linking_place(k, k->key[i], k->level_of[i], offset, &key);
-      h->corner[i][e] =
+      h->corner[e][i] =
           key == k->key[i] ? i : resolve(k, q, key, k->level_of[i]);
     }
   }
@@ -161,7 +161,7 @@ static void want_coarse_leaves(struct linking *k) {
   memset(k->wanted, 0, (size_t)n);
   for (int32_t i = 0; i < nknown; i++) {
     for (int f = 0; f < NFACE; f++) {
-      const int32_t j = h->neighbour[i][f];
+      const int32_t j = h->neighbour[f][i];
       if (j >= nknown && k->level_of[j] < k->level_of[i]) k->wanted[j] = 1;
     }
   }

@@ -199,61 +199,79 @@ static void find_leaves(struct linking *k) {
  * merged node one is taken. Travels in h->w, which is not needed yet. */
 static void find_patches(struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
-  double *w = &h->w[0][0];
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     for (int f = 0; f < NFACE; f++) {
       const int32_t face = mesh->cell_face[i][f];
       if (face < mesh->nfaces) {
-        h->w[h->leaf_slot[i]][f] = mesh->face_patch[face] + 1;
+        h->w[f][h->leaf_slot[i]] = mesh->face_patch[face] + 1;
       }
     }
   }
   for (int l = h->nlevels - 1; l >= 0; l--) {
     const struct level *level = &h->level[l];
-    plan_run(&h->level[l].add, 1, &w, NFACE, true);
+    plan_run(&h->level[l].add, NFACE, h->w, 1, true);
     for (int32_t k = 0; k < level->nfamilies; k++) {
       const int32_t parent = h->family_parent[level->family_begin + k];
       for (int c = 0; c < NCHILD; c++) {
         for (int d = 0; d < DIM; d++) {
           const int f = 2 * d + (c >> d & 1);
-          h->w[parent][f] = h->w[family_slot(level, k, c)][f];
+          h->w[f][parent] = h->w[f][family_slot(level, k, c)];
         }
       }
     }
   }
   for (int l = 0; l < h->nlevels; l++) {
-    plan_run(&h->level[l].copy, 1, &w, NFACE, false);
+    plan_run(&h->level[l].copy, NFACE, h->w, 1, false);
   }
-  h->side = MEM_NEW(int32_t, h->nactive);
-  for (int32_t i = 0; i < h->nactive; i++) {
-    h->side[i] = h->wall[i] ? h->nsides++ : -1;
-  }
+  int32_t n = 0;
+  for (int32_t i = 0; i < h->nactive; i++) h->nsides += h->wall[i] != 0;
   h->sides = MEM_NEW(struct side, h->nsides);
   for (int32_t i = 0; i < h->nactive; i++) {
     if (!h->wall[i]) continue;
-    struct side *side = &h->sides[h->side[i]];
+    struct side *side = &h->sides[n++];
     side->slot = i;
     for (int f = 0; f < NFACE; f++) {
-      side->patch[f] = (int8_t)(h->wall[i] >> f & 1 ? h->w[i][f] - 1 : -1);
+      side->patch[f] = (int8_t)(h->wall[i] >> f & 1 ? h->w[f][i] - 1 : -1);
     }
   }
 }
 
-static void allocate(struct hierarchy *h) {
-  const size_t n = (size_t)h->nslots, ncoarse = (size_t)h->level[0].nowned;
-  h->w = mem_alloc(n, sizeof *h->w);
+static void allocate_sides(struct hierarchy *h) {
   const struct level *last = &h->level[h->nlevels - 1];
   const size_t nfamilies = (size_t)(last->family_begin + last->nfamilies);
-  h->limit = mem_alloc(nfamilies, sizeof *h->limit);
-  h->beyond = mem_alloc((size_t)h->nlevels, sizeof *h->beyond);
-  h->inverse = MEM_NEW(double, n *DIM);
-  h->e = MEM_NEW(double, (n + (size_t)h->njumps) * DIM);
-  h->r = MEM_NEW(double, n *DIM);
-  for (int k = 0; k < 3; k++) h->coarse[k] = MEM_NEW(double, ncoarse *DIM);
+  for (int f = 0; f < NFACE; f++) {
+    h->w[f] = MEM_NEW(double, h->nslots);
+    h->limit[f] = MEM_NEW(float, nfamilies);
+  }
+}
+
+/* Values beyond the slots: virtual children, then images. */
+static int64_t nvalues(const struct hierarchy *h) {
+  return (int64_t)h->nslots + h->njumps + h->nmirrors;
+}
+
+static int64_t arena_length(const struct hierarchy *h) {
+  const struct mesh *mesh = h->mesh;
+  const int64_t inner = nvalues(h) + h->nslots;
+  const int64_t outer = (int64_t)mesh->ncells + mesh->nfaces_all;
+  return DIM * (inner > outer ? inner : outer);
+}
+
+static void allocate(struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
   const size_t nleaves = (size_t)mesh->nleaves * DIM;
-  h->work_cells = MEM_NEW(double, (size_t)mesh->ncells *DIM);
-  h->work_faces = MEM_NEW(double, (size_t)mesh->nfaces_all *DIM);
+  h->beyond = mem_alloc((size_t)h->nlevels, sizeof *h->beyond);
+  h->arena = MEM_NEW(double, arena_length(h));
+  for (int c = 0; c < DIM; c++) {
+    h->inverse[c] = MEM_NEW(double, h->nslots);
+    h->e[c] = h->arena + c * nvalues(h);
+    h->r[c] = h->arena + DIM * nvalues(h) + (int64_t)c * h->nslots;
+  }
+  h->work_cells = h->arena;
+  h->work_faces = h->arena + (int64_t)DIM * mesh->ncells;
+  for (int k = 0; k < 3; k++) {
+    h->coarse[k] = MEM_NEW(double, h->level[0].nowned);
+  }
   h->residual = MEM_NEW(double, nleaves);
   h->weight = MEM_NEW(double, nleaves);
   h->scale = MEM_NEW(double, mesh->nleaves);
@@ -289,8 +307,10 @@ struct hierarchy *hierarchy_new(const struct mesh *mesh) {
   if (k.nranks > 1) ghosts_make(&k);
   h->nslots = h->nowned + k.nghosts;
   jumps_make(&k);
-  allocate(h);
+  allocate_sides(h);
   find_patches(h);
+  mirrors_make(&k);
+  allocate(h);
   for (int l = 0; l < h->nlevels; l++) mem_free(k.parent_key[l]);
   mem_free(k.parent_key);
   mem_free(k.slot_family);
@@ -315,27 +335,33 @@ void hierarchy_destroy(struct hierarchy *h) {
     plan_end(copy);
   }
   krylov_space_destroy(h->krylov);
-  void *owned[] = {h->side,          h->sides,      h->limit,
-                   h->beyond,        h->level,      h->leaf_slot,
-                   h->family_parent, h->neighbour,  h->corner,
-                   h->wall,          h->jump,       h->w,
-                   h->inverse,       h->e,          h->r,
-                   h->coarse[0],     h->coarse[1],  h->coarse[2],
-                   h->work_cells,    h->work_faces, h->residual,
-                   h->weight,        h->scale,      h->rough,
+  void *owned[] = {h->mirror,     h->sides,         h->beyond,    h->level,
+                   h->leaf_slot,  h->family_parent, h->wall,      h->jump,
+                   h->coarse[0],  h->coarse[1],     h->coarse[2], h->arena,
+                   h->residual,   h->weight,        h->scale,     h->rough,
                    h->rough_begin};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
+  for (int f = 0; f < NFACE; f++) {
+    mem_free(h->neighbour[f]);
+    mem_free(h->w[f]);
+    mem_free(h->limit[f]);
+  }
+  for (int e = 0; e < NCORNER; e++) mem_free(h->corner[e]);
+  for (int c = 0; c < DIM; c++) mem_free(h->inverse[c]);
   mem_free(h);
 }
 
 int64_t hierarchy_bytes(const struct hierarchy *h) {
-  const struct mesh *mesh = h->mesh;
-  const int64_t link = NFACE + NCORNER, number = sizeof(double);
-  const int64_t slot = NFACE * number + 3 * DIM * number;
+  const struct level *last = &h->level[h->nlevels - 1];
+  const int64_t nfamilies = last->family_begin + last->nfamilies;
+  const int64_t number = sizeof(double), index = sizeof(int32_t);
 
-  return h->nactive * (link * (int64_t)sizeof(int32_t) + 1) + h->nslots * slot +
-         h->njumps * (int64_t)(sizeof(struct jump) + DIM * sizeof(double)) +
-         mesh->nleaves * (int64_t)(sizeof(int32_t) + (2 * DIM + 1) * number) +
-         (int64_t)(mesh->ncells + mesh->nfaces_all) * DIM * number +
+  return h->nactive * ((NFACE + NCORNER) * index + 1) +
+         h->nslots * (NFACE + DIM) * number + arena_length(h) * number +
+         nfamilies * (NFACE * (int64_t)sizeof(float) + index) +
+         h->njumps * (int64_t)sizeof(struct jump) +
+         h->nmirrors * (int64_t)sizeof(struct mirror) +
+         h->nsides * (int64_t)sizeof(struct side) +
+         h->nleaves * (index + (2 * DIM + 1) * number) +
          krylov_space_bytes(h->krylov);
 }

@@ -5,8 +5,7 @@
 #include "linking.h"
 #include "talus/memory.h"
 
-/* Level of any slot. */
-static int slot_level(const struct linking *k, int32_t slot) {
+int linking_level(const struct linking *k, int32_t slot) {
   const struct hierarchy *h = k->h;
   if (slot >= h->nowned) return k->ghost_level[slot - h->nowned];
   int l = h->nlevels - 1;
@@ -20,13 +19,12 @@ static void set_slopes(const struct linking *k, int l, struct jump *jump) {
   const struct hierarchy *h = k->h;
   const struct level *level = &h->level[l];
   const int32_t i = jump->fine - level->begin;
-  const int black = i >= level->nfamilies * HALF;
-  const int child = colour_child(i % HALF, black);
+  const int child = run_child(i / level->nfamilies);
   for (int d = 0; d < DIM; d++) {
     int steps = 0;
     for (int side = 0; side < 2; side++) {
-      const int32_t n = h->neighbour[jump->coarse][2 * d + side];
-      const bool usable = n != jump->coarse && slot_level(k, n) == l - 1;
+      const int32_t n = h->neighbour[2 * d + side][jump->coarse];
+      const bool usable = n != jump->coarse && linking_level(k, n) == l - 1;
       jump->node[d][side] = usable ? n : jump->coarse;
       steps += usable;
     }
@@ -43,9 +41,9 @@ static void list_jumps(struct linking *k, int l, bool count_only) {
   level->jump_begin = h->njumps;
   for (int32_t i = level->begin; i < level->begin + level->nowned; i++) {
     for (int f = 0; f < NFACE; f++) {
-      const int32_t j = h->neighbour[i][f];
+      const int32_t j = h->neighbour[f][i];
       if (j >= level->begin && j < h->nowned) continue;
-      if (slot_level(k, j) == l) continue;
+      if (linking_level(k, j) == l) continue;
       if (!count_only) {
         struct jump *jump = &h->jump[h->njumps];
         jump->fine = i;
@@ -66,6 +64,6 @@ void jumps_make(struct linking *k) {
   h->njumps = 0;
   for (int l = 1; l < h->nlevels; l++) list_jumps(k, l, false);
   for (int32_t n = 0; n < h->njumps; n++) {
-    h->neighbour[h->jump[n].fine][h->jump[n].face] = h->nslots + n;
+    h->neighbour[h->jump[n].face][h->jump[n].fine] = h->nslots + n;
   }
 }

@@ -59,19 +59,34 @@ static void sum_ranks(const struct krylov_system *s, int n, double *v) {
 }
 
 /* Sums run in LANES parts, so that the compiler may use vectors and the order
- * is fixed. */
-enum { LANES = 8 };
+ * is fixed. Long vectors are taken in pieces of BLOCK numbers that stay in
+ * cache while all directions pass by. */
+enum { LANES = 8, BLOCK = 1024 };
 
-static double weighted_product(int64_t n, const double *w, const double *a,
-                               const double *b) {
-  double lane[LANES] = {0}, sum = 0;
+struct lanes {
+  double sum[LANES];
+};
+
+static void add_products(int64_t n, const double *w, const double *a,
+                         const double *b, struct lanes *restrict lanes) {
   int64_t i = 0;
   for (; i + LANES <= n; i += LANES) {
-    for (int k = 0; k < LANES; k++) lane[k] += w[i + k] * a[i + k] * b[i + k];
+    for (int k = 0; k < LANES; k++) {
+      lanes->sum[k] += w[i + k] * a[i + k] * b[i + k];
+    }
   }
-  for (; i < n; i++) sum += w[i] * a[i] * b[i];
-  for (int k = 0; k < LANES; k++) sum += lane[k];
+  for (int k = 0; i + k < n; k++)
+    lanes->sum[k] += w[i + k] * a[i + k] * b[i + k];
+}
+
+static double lanes_sum(const struct lanes *lanes) {
+  double sum = 0;
+  for (int k = 0; k < LANES; k++) sum += lanes->sum[k];
   return sum;
+}
+
+static int64_t block_size(int64_t n, int64_t begin) {
+  return n - begin < BLOCK ? n - begin : BLOCK;
 }
 
 /* As unsigned integers, absolute values are ordered and a NaN beats all. */
@@ -119,23 +134,39 @@ static void add_to(int64_t n, double *restrict a, double f,
   for (int64_t i = 0; i < n; i++) a[i] += f * b[i];
 }
 
+/* v += sum of a[j] times the `kept` vectors before number k. */
+static void add_others(int64_t n, double *const vector[KRYLOV_DIRECTIONS],
+                       int k, int kept, const double *a) {
+  for (int64_t i = 0; i < n; i += BLOCK) {
+    for (int j = 0; j < kept; j++) {
+      const int other = (k + KRYLOV_DIRECTIONS - 1 - j) % KRYLOV_DIRECTIONS;
+      add_to(block_size(n, i), vector[k] + i, a[j], vector[other] + i);
+    }
+  }
+}
+
 /* Make direction k orthogonal to the `kept` others before it. */
 static void orthogonalise(const struct krylov_system *s,
                           struct krylov_space *space, int k, int kept) {
   const int64_t n = (int64_t)s->n * s->nparts;
-  double product[KRYLOV_DIRECTIONS];
+  struct lanes lanes[KRYLOV_DIRECTIONS] = {{{0}}};
+  double a[KRYLOV_DIRECTIONS];
   if (kept == 0) return;
-  for (int j = 0; j < kept; j++) {
-    const int other = (k + KRYLOV_DIRECTIONS - 1 - j) % KRYLOV_DIRECTIONS;
-    product[j] = weighted_product(n, s->weight, space->q[k], space->q[other]);
+  for (int64_t i = 0; i < n; i += BLOCK) {
+    for (int j = 0; j < kept; j++) {
+      const int other = (k + KRYLOV_DIRECTIONS - 1 - j) % KRYLOV_DIRECTIONS;
+      add_products(block_size(n, i), s->weight + i, space->q[k] + i,
+                   space->q[other] + i, &lanes[j]);
+    }
   }
-  sum_ranks(s, kept, product);
+  for (int j = 0; j < kept; j++) a[j] = lanes_sum(&lanes[j]);
+  sum_ranks(s, kept, a);
   for (int j = 0; j < kept; j++) {
-    const int other = (k + KRYLOV_DIRECTIONS - 1 - j) % KRYLOV_DIRECTIONS;
-    const double a = -product[j] * space->inverse[other];
-    add_to(n, space->q[k], a, space->q[other]);
-    add_to(n, space->z[k], a, space->z[other]);
+    a[j] *=
+        -space->inverse[(k + KRYLOV_DIRECTIONS - 1 - j) % KRYLOV_DIRECTIONS];
   }
+  add_others(n, space->q, k, kept, a);
+  add_others(n, space->z, k, kept, a);
 }
 
 /* Next direction: precondition, apply, make orthogonal to the `kept` ones
@@ -149,9 +180,14 @@ static void make_direction(const struct krylov_system *s,
   s->precondition(s->context, r, space->z[k]);
   s->apply(s->context, space->z[k], q);
   orthogonalise(s, space, k, kept);
-  product[0] = weighted_product(n, s->weight, r, q);
-  product[1] = weighted_product(n, s->weight, q, q);
-  product[2] = weighted_product(n, s->weight, r, r);
+  struct lanes lanes[3] = {{{0}}};
+  for (int64_t i = 0; i < n; i += BLOCK) {
+    const int64_t size = block_size(n, i);
+    add_products(size, s->weight + i, r + i, q + i, &lanes[0]);
+    add_products(size, s->weight + i, q + i, q + i, &lanes[1]);
+    add_products(size, s->weight + i, r + i, r + i, &lanes[2]);
+  }
+  for (int j = 0; j < 3; j++) product[j] = lanes_sum(&lanes[j]);
   sum_ranks(s, 3, product);
   space->inverse[k] = 1 / product[1];
 }

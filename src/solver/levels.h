@@ -3,8 +3,9 @@
  *
  * Slots: [0, nowned) nodes of this rank, level after level; [nowned, nslots)
  * ghosts, nodes of other ranks that ours refer to. A family is the NCHILD
- * children of one node; it is whole on one rank. On level l >= 1 the red
- * children of all families come first, then the black ones.
+ * children of one node; it is whole on one rank. On level l >= 1 the slots
+ * are sorted by child number, red ones first, then by family: what a sweep over
+ * one colour reads of its own follows in memory, and so do the siblings.
  */
 #ifndef TALUS_SOLVER_LEVELS_H
 #define TALUS_SOLVER_LEVELS_H
@@ -28,8 +29,9 @@ struct level {
   int32_t nowned;       /* slots, trees on level 0, else NCHILD per family */
   int32_t nfamilies;    /* 0 on level 0 */
   int32_t family_begin; /* into family_parent */
-  int32_t jump_begin, jump_end; /* into jump */
-  struct plan copy;             /* owned -> ghost values of this level */
+  int32_t jump_begin, jump_end;     /* into jump */
+  int32_t mirror_begin, mirror_end; /* into mirror */
+  struct plan copy;                 /* owned -> ghost values of this level */
   struct plan add; /* the same backwards; borrows the lists of copy */
 };
 
@@ -41,6 +43,13 @@ struct jump {
   int32_t face;
   int32_t node[DIM][2]; /* slots whose difference is the slope along an axis */
   float weight[DIM];
+};
+
+/* A node beyond a wall: the image of one inside, slot nslots + njumps + k of
+ * h->e. */
+struct mirror {
+  int32_t source; /* slot */
+  int8_t patch;
 };
 
 /* A node at a wall. */
@@ -58,26 +67,28 @@ struct hierarchy {
   int32_t nowned, nactive, nslots; /* [nowned, nactive): ghosts that are
                                       parents of our families */
   int32_t nleaves;
-  int32_t *leaf_slot;          /* [nleaves] */
-  int32_t *family_parent;      /* slot one level up */
-  int32_t (*neighbour)[NFACE]; /* [nactive] slots; itself at a wall, a
-                                  virtual child across a jump */
-  int32_t (*corner)[NCORNER];  /* [nactive] of axes a < b, 4 pair + (upper
-                                  a) + 2 (upper b); mirrored at a wall */
-  uint8_t *wall;               /* [nactive] bit f: face f is a wall */
-  int32_t *side;               /* [nactive] into sides, -1: no wall */
+  int32_t *leaf_slot;        /* [nleaves] */
+  int32_t *family_parent;    /* slot one level up */
+  int32_t *neighbour[NFACE]; /* [nactive] slots; its own image at a wall,
+                                a virtual child across a jump */
+  int32_t *corner[NCORNER];  /* [nactive] of axes a < b, 4 pair + (upper
+                                a) + 2 (upper b); an image beyond a wall */
+  uint8_t *wall;             /* [nactive] bit f: face f is a wall */
   int32_t nsides;
   struct side *sides;
   int32_t njumps;
   struct jump *jump;
+  int32_t nmirrors;
+  struct mirror *mirror;
   /* Operator: set by coefficients_set for each solve */
-  int nparts;         /* 1, or DIM: velocity */
-  double (*w)[NFACE]; /* [nslots] alpha area / distance, 0 at a wall */
-  double *inverse;    /* [nslots * nparts] 1 / diagonal, 0 if it is 0 */
-  double *e, *r;      /* [nslots * nparts] correction, residual */
+  int nparts;           /* 1, or DIM: velocity */
+  double *w[NFACE];     /* [nslots] alpha area / distance, 0 at a wall */
+  double *inverse[DIM]; /* [nslots] 1 / diagonal, 0 if it is 0 */
+  double *e[DIM];       /* [nslots + njumps + nmirrors] correction */
+  double *r[DIM];       /* [nslots] residual */
   /* Conductance across a side of a family over that inside it, at most 1,
    * [families] */
-  float (*limit)[NFACE];
+  float *limit[NFACE];
   /* Nodes near jumps of the coefficient, level by level and on each by child
    * number, NULL: never needed; how often a cycle relaxes them besides */
   int32_t *rough;       /* [nowned] */
@@ -87,8 +98,10 @@ struct hierarchy {
   double first_residual; /* before the first of them, or the second */
   /* Value beyond a wall over that inside, [nlevels] */
   double (*beyond)[DIM][MESH_MAX_PATCHES];
-  double *coarse[3]; /* [trees * nparts] for conjugate gradients */
-  /* Work of the outer solver */
+  double *coarse[3]; /* [trees] for conjugate gradients */
+  /* Work of the outer solver. Cells and faces share the arena with e and r:
+   * neither is needed while the other is in use */
+  double *arena;
   double *work_cells;        /* [DIM * ncells] */
   double *work_faces;        /* [DIM * nfaces_all] */
   double *residual, *weight; /* [DIM * nleaves] */
@@ -99,16 +112,13 @@ struct hierarchy {
 /* Slot of child c of family k of a level. */
 static inline int32_t family_slot(const struct level *level, int32_t k, int c) {
   const int black = __builtin_popcount((unsigned)c) & 1;
-  return level->begin + (black * level->nfamilies + k) * HALF + (c >> 1);
+  return level->begin + (black * HALF + (c >> 1)) * level->nfamilies + k;
 }
-/* First red and first black child of family k; child j of a colour is
- * child colour_child(j, black) of the family. */
-static inline int32_t family_first(const struct level *level, int32_t k,
-                                   int black) {
-  return level->begin + (black * level->nfamilies + k) * HALF;
-}
-static inline int colour_child(int j, int black) {
-  return 2 * j + ((__builtin_popcount((unsigned)j) & 1) ^ black);
+/* Child whose slots are number q of the NCHILD runs of a level: red ones
+ * first, HALF of each. */
+static inline int run_child(int q) {
+  const int j = q % HALF;
+  return 2 * j + ((__builtin_popcount((unsigned)j) & 1) ^ q / HALF);
 }
 /* Number of the pair of axes a < b: 01, 02, 12. */
 static inline int pair_number(int a, int b) { return a + b - 1; }

@@ -26,6 +26,7 @@ struct linking {
   uint64_t *ghost_key;
   int8_t *ghost_level;
   int32_t nghosts, ghost_capacity;
+  int32_t mirror_capacity;
 };
 
 static inline uint64_t key_align(uint64_t key, int level) {
@@ -40,6 +41,8 @@ static inline int key_child(uint64_t key, int level) {
 int linking_owner(const struct linking *k, int level, uint64_t key);
 /* Slot of an owned node, or SLOT_UNKNOWN. */
 int32_t linking_find(const struct linking *k, int level, uint64_t key);
+/* Level of any slot. */
+int linking_level(const struct linking *k, int32_t slot);
 /* Key of the node at an offset of -1, 0 or 1 sizes along each axis; axes that
  * would leave the domain are dropped, and returned as a mask. */
 int linking_place(const struct linking *k, uint64_t key, int level,
@@ -55,6 +58,9 @@ void links_corner_offset(int entry, int offset[DIM]);
 
 /* Faces beyond which lies a coarser leaf (jumps.c). */
 void jumps_make(struct linking *k);
+
+/* Images beyond walls, once the jumps are known (mirrors.c). */
+void mirrors_make(struct linking *k);
 
 /* Ghost slot of a node of another rank, made if new (ghosts.c). */
 int32_t ghosts_get(struct linking *k, uint64_t key, int level);

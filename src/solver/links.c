@@ -30,12 +30,12 @@ static void link_trees(struct linking *k) {
       if (linking_place(k, key, 0, offset, &other)) {
         h->wall[i] = (uint8_t)(h->wall[i] | 1 << f);
       }
-      h->neighbour[i][f] = linking_find(k, 0, other);
+      h->neighbour[f][i] = linking_find(k, 0, other);
     }
     for (int e = 0; e < NCORNER; e++) {
       links_corner_offset(e, offset);
       linking_place(k, key, 0, offset, &other);
-      h->corner[i][e] = linking_find(k, 0, other);
+      h->corner[e][i] = linking_find(k, 0, other);
     }
   }
 }
@@ -66,9 +66,9 @@ static void link_faces(struct linking *k, int l, int32_t family, int c) {
       h->wall[i] = (uint8_t)(h->wall[i] | 1 << f);
       n = i;
     } else {
-      n = child_of(k, l, h->neighbour[parent][f], other);
+      n = child_of(k, l, h->neighbour[f][parent], other);
     }
-    h->neighbour[i][f] = n;
+    h->neighbour[f][i] = n;
   }
 }
 
@@ -84,16 +84,16 @@ static int32_t corner_of(struct linking *k, int l, int32_t family, int c, int a,
   const bool wall_b = out_b && h->wall[parent] >> face_b & 1;
   const int32_t i = family_slot(level, family, c);
   if (wall_a || wall_b) {
-    return wall_a ? wall_b ? i : h->neighbour[i][face_b]
-                  : h->neighbour[i][face_a];
+    return wall_a ? wall_b ? i : h->neighbour[face_b][i]
+                  : h->neighbour[face_a][i];
   }
   const int other = c ^ 1 << a ^ 1 << b;
   if (!out_a && !out_b) return family_slot(level, family, other);
   int32_t above;
   if (out_a && out_b) {
-    above = h->corner[parent][corner_entry(a, upper_a, b, upper_b)];
+    above = h->corner[corner_entry(a, upper_a, b, upper_b)][parent];
   } else {
-    above = h->neighbour[parent][out_a ? face_a : face_b];
+    above = h->neighbour[out_a ? face_a : face_b][parent];
   }
   return child_of(k, l, above, other);
 }
@@ -103,7 +103,7 @@ static void link_corners(struct linking *k, int l, int32_t family, int c) {
   for (int a = 0; a < DIM; a++) {
     for (int b = a + 1; b < DIM; b++) {
       for (int q = 0; q < 4; q++) {
-        k->h->corner[i][4 * pair_number(a, b) + q] =
+        k->h->corner[4 * pair_number(a, b) + q][i] =
             corner_of(k, l, family, c, a, q & 1, b, q >> 1);
       }
     }
@@ -131,9 +131,13 @@ static void list_keys(struct linking *k) {
 void links_grow(struct linking *k, int32_t n) {
   struct hierarchy *h = k->h;
   const size_t size = (size_t)n;
-  const int32_t old = h->neighbour ? h->nactive : h->nowned;
-  h->neighbour = mem_resize(h->neighbour, size, sizeof *h->neighbour);
-  h->corner = mem_resize(h->corner, size, sizeof *h->corner);
+  const int32_t old = h->neighbour[0] ? h->nactive : h->nowned;
+  for (int f = 0; f < NFACE; f++) {
+    h->neighbour[f] = mem_resize(h->neighbour[f], size, sizeof(int32_t));
+  }
+  for (int e = 0; e < NCORNER; e++) {
+    h->corner[e] = mem_resize(h->corner[e], size, sizeof(int32_t));
+  }
   h->wall = mem_resize(h->wall, size, sizeof *h->wall);
   if (k->nranks > 1) {
     k->key = mem_resize(k->key, size, sizeof *k->key);
@@ -141,8 +145,8 @@ void links_grow(struct linking *k, int32_t n) {
     k->wanted = mem_resize(k->wanted, size, sizeof *k->wanted);
   }
   for (int32_t i = old; i < n; i++) {
-    for (int f = 0; f < NFACE; f++) h->neighbour[i][f] = SLOT_UNKNOWN;
-    for (int e = 0; e < NCORNER; e++) h->corner[i][e] = SLOT_UNKNOWN;
+    for (int f = 0; f < NFACE; f++) h->neighbour[f][i] = SLOT_UNKNOWN;
+    for (int e = 0; e < NCORNER; e++) h->corner[e][i] = SLOT_UNKNOWN;
     h->wall[i] = 0;
     k->key[i] = k->ghost_key[i - h->nowned];
     k->level_of[i] = k->ghost_level[i - h->nowned];

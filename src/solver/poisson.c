@@ -15,16 +15,17 @@ struct context {
 };
 
 void poisson_flux(const struct mesh *mesh, const double *alpha_f,
-                  const double *p, double *flux) {
+                  const double *p, double *restrict flux) {
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int32_t *node = mesh->face_node[f];
     flux[f] = alpha_f[f] * (p[node[1]] - p[node[0]]) / mesh->face_h[f];
   }
-  mesh_fill_faces(mesh, 1, &flux);
+  mesh_fill_faces(mesh, 1, (double *const[]){flux});
 }
 
 /* q = div(alpha grad p), p filled. */
-static void divergence(const struct context *k, const double *p, double *q) {
+static void divergence(const struct context *k, const double *p,
+                       double *restrict q) {
   const struct mesh *mesh = k->mesh;
   double *flux = k->h->work_faces;
   poisson_flux(mesh, k->alpha_f, p, flux);

@@ -16,20 +16,22 @@
  * help (Poisson, 1 : 1000 across a circle, levels 5 to 10). */
 enum { ROUGH_LAYERS = 10, ROUGH_SWEEPS = 20 };
 
-static bool is_rough(const double w[NFACE]) {
+static bool is_rough(const struct hierarchy *h, int32_t i) {
   double least = HUGE_VAL, most = 0;
   for (int f = 0; f < NFACE; f++) {
-    if (w[f] > 0) least = min2(least, w[f]);
-    most = max2(most, w[f]);
+    const double w = h->w[f][i];
+    if (w > 0) least = min2(least, w);
+    most = max2(most, w);
   }
   return most > ROUGH_JUMP * least;
 }
 
 /* mark: 1 at a jump, n + 1 in n nodes' distance, 0 far away. Virtual children
- * have none. */
+ * and images have none. */
 static void set_marks(const struct hierarchy *h, double *mark) {
-  memset(mark, 0, (size_t)(h->nslots + h->njumps) * sizeof *mark);
-  for (int32_t i = 0; i < h->nowned; i++) mark[i] = is_rough(h->w[i]);
+  const size_t n = (size_t)(h->nslots + h->njumps + h->nmirrors);
+  memset(mark, 0, n * sizeof *mark);
+  for (int32_t i = 0; i < h->nowned; i++) mark[i] = is_rough(h, i);
   for (int layer = 1; layer <= ROUGH_LAYERS; layer++) {
     for (int l = 0; l < h->nlevels; l++) {
       plan_run(&h->level[l].copy, 1, &mark, 1, false);
@@ -37,7 +39,7 @@ static void set_marks(const struct hierarchy *h, double *mark) {
     for (int32_t i = 0; i < h->nowned; i++) {
       bool near = false;
       for (int f = 0; f < NFACE; f++) {
-        near = near || (int)mark[h->neighbour[i][f]] == layer;
+        near = near || (int)mark[h->neighbour[f][i]] == layer;
       }
       if (near && mark[i] == 0) mark[i] = layer + 1;
     }
@@ -49,11 +51,10 @@ static void list_marked(struct hierarchy *h, const double *mark) {
   for (int l = 0; l < h->nlevels; l++) {
     const struct level *level = &h->level[l];
     for (int colour = 0; colour < NCHILD; colour++) {
-      const int32_t first =
-          family_first(level, 0, colour / HALF) + colour % HALF;
+      const int32_t first = family_slot(level, 0, run_child(colour));
       h->rough_begin[l * NCHILD + colour] = n;
       for (int32_t k = 0; k < level->nfamilies; k++) {
-        if (mark[first + k * HALF] > 0) h->rough[n++] = first + k * HALF;
+        if (mark[first + k] > 0) h->rough[n++] = first + k;
       }
     }
   }
@@ -82,7 +83,7 @@ void rough_watch(struct hierarchy *h, const double *scale, const double *r) {
     h->rough = MEM_NEW(int32_t, h->nowned);
     h->rough_begin = MEM_NEW(int32_t, h->nlevels * NCHILD + 1);
   }
-  set_marks(h, h->e);
-  list_marked(h, h->e);
+  set_marks(h, h->e[0]);
+  list_marked(h, h->e[0]);
   h->rough_sweeps = ROUGH_SWEEPS;
 }

@@ -51,13 +51,13 @@ static void stress(const struct mesh *mesh, const double *eta_f,
   mesh_fill_faces(mesh, DIM, tau);
 }
 
-/* Divergence of the stress at leaf i. */
+/* Divergence of the stress at leaf i, times h. */
 static inline double divergence(const struct mesh *mesh, const double *tau,
                                 int32_t i) {
   const int32_t *face = mesh->cell_face[i];
   double sum = 0;
   for (int d = 0; d < DIM; d++) sum += tau[face[2 * d + 1]] - tau[face[2 * d]];
-  return sum / mesh->h[i];
+  return sum;
 }
 
 void viscous_force(const struct mesh *mesh, const double *eta_f,
@@ -67,7 +67,7 @@ void viscous_force(const struct mesh *mesh, const double *eta_f,
   stress(mesh, eta_f, u, tau);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      force[e][i] = divergence(mesh, tau[e], i);
+      force[e][i] = divergence(mesh, tau[e], i) / mesh->h[i];
     }
     mem_free(tau[e]);
   }
@@ -99,15 +99,16 @@ void viscous_dissipation(const struct mesh *mesh, const double *eta_f,
 /* q = rho u - theta dt div(2 eta D(u)), u filled. */
 static void operate(const struct context *k, double *const u[DIM], double *q) {
   const struct mesh *mesh = k->mesh;
+  const int64_t n = mesh->nleaves;
   double *tau[DIM];
   for (int e = 0; e < DIM; e++) {
     tau[e] = k->h->work_faces + (int64_t)e * mesh->nfaces_all;
   }
   stress(mesh, k->eta_f, u, tau);
-  for (int e = 0; e < DIM; e++) {
-    double *part = q + (int64_t)e * mesh->nleaves;
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      part[i] = k->rho[i] * u[e][i] - k->theta_dt * divergence(mesh, tau[e], i);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double ratio = k->theta_dt / mesh->h[i];
+    for (int e = 0; e < DIM; e++) {
+      q[e * n + i] = k->rho[i] * u[e][i] - ratio * divergence(mesh, tau[e], i);
     }
   }
 }

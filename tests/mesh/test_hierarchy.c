@@ -16,19 +16,49 @@ START_TEST(neighbours_point_back) {
       grid_new(MPI_COMM_WORLD, 1 + _i % 2, _i / 2, 1, DIM == 2 ? 5 : 4);
   struct mesh *mesh = mesh_new(forest);
   struct hierarchy *h = hierarchy_new(mesh);
+  const int32_t nvalues = h->nslots + h->njumps + h->nmirrors;
   int wrong = 0;
   for (int32_t i = 0; i < h->nowned; i++) {
     for (int f = 0; f < NFACE; f++) {
-      const int32_t j = h->neighbour[i][f];
-      if (j < 0 || j >= h->nslots + h->njumps) wrong++;
+      const int32_t j = h->neighbour[f][i];
+      if (j < 0 || j >= nvalues) wrong++;
       if (j < 0 || j >= h->nowned) continue;
-      if (h->neighbour[j][f ^ 1] != i && j != i) wrong++;
+      if (h->neighbour[f ^ 1][j] != i) wrong++;
     }
     for (int e = 0; e < NCORNER; e++) {
-      if (h->corner[i][e] < 0 || h->corner[i][e] >= h->nslots) wrong++;
+      if (h->corner[e][i] < 0 || h->corner[e][i] >= nvalues) wrong++;
     }
   }
   ck_assert_int_eq((int)mesh_sum(mesh, wrong), 0);
+  hierarchy_destroy(h);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
+/* Beyond a wall lies the image of the node; on a grid without a fine edge
+ * beside it, diagonally that of the neighbour along the wall. */
+START_TEST(walls_show_images) {
+  struct forest *forest = grid_new(MPI_COMM_WORLD, 1, false, 1, 3);
+  struct mesh *mesh = mesh_new(forest);
+  struct hierarchy *h = hierarchy_new(mesh);
+  const int32_t first = h->nslots + h->njumps; /* image */
+  int wrong = 0, walls = 0;
+  for (int32_t i = 0; i < h->nowned; i++) {
+    for (int f = 0; f < 2; f++) {
+      if (!(h->wall[i] >> f & 1)) continue;
+      walls++;
+      if (h->neighbour[f][i] < first) wrong++;
+      if (h->mirror[h->neighbour[f][i] - first].source != i) wrong++;
+      const int32_t next = h->neighbour[3][i]; /* upwards */
+      const int32_t diagonal = h->corner[corner_entry(0, f, 1, 1)][i];
+      if (next >= h->nslots) continue;
+      if (diagonal < first || h->mirror[diagonal - first].source != next)
+        wrong++;
+    }
+  }
+  ck_assert_int_eq((int)mesh_sum(mesh, wrong), 0);
+  ck_assert(mesh_sum(mesh, walls) > 0);
   hierarchy_destroy(h);
   mesh_destroy(mesh);
   forest_destroy(forest);
@@ -128,6 +158,7 @@ Suite *hierarchy_suite(void) {
   TCase *t = tcase_create("hierarchy");
   tcase_set_timeout(t, 60);
   tcase_add_loop_test(t, neighbours_point_back, 0, 4);
+  tcase_add_test(t, walls_show_images);
   tcase_add_test(t, every_leaf_has_a_place);
   tcase_add_test(t, one_cycle_leaves_little);
   tcase_add_test(t, leaves_no_memory_behind);

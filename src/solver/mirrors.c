@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Nodes beyond walls: images of the nodes inside, times what the boundary
+ * condition makes of a correction (hierarchy.beyond). The two-point operator
+ * has walls in its diagonal; the images are seen by the transposed gradient
+ * along a wall and by the prolongation. */
+#include "linking.h"
+#include "talus/memory.h"
+
+/* Slot of a new image. */
+static int32_t add_mirror(struct linking *k, int32_t source, int patch) {
+  struct hierarchy *h = k->h;
+  if (h->nmirrors == k->mirror_capacity) {
+    k->mirror_capacity = k->mirror_capacity ? 2 * k->mirror_capacity : 64;
+    h->mirror =
+        mem_resize(h->mirror, (size_t)k->mirror_capacity, sizeof *h->mirror);
+  }
+  h->mirror[h->nmirrors] = (struct mirror){source, (int8_t)patch};
+  return h->nslots + h->njumps + h->nmirrors++;
+}
+
+static void link_faces(struct linking *k, const struct side *side) {
+  for (int f = 0; f < NFACE; f++) {
+    if (side->patch[f] < 0) continue;
+    k->h->neighbour[f][side->slot] = add_mirror(k, side->slot, side->patch[f]);
+  }
+}
+
+/* Diagonal nodes are images of the neighbours along the wall, which may be
+ * another rank's and then have none yet. */
+static void link_corners(struct linking *k, const struct side *side, int a,
+                         int upper) {
+  struct hierarchy *h = k->h;
+  const int face = 2 * a + upper;
+  for (int f = 0; f < NFACE; f++) {
+    if (f >> 1 == a || side->patch[f] >= 0) continue;
+    int32_t *corner =
+        &h->corner[corner_entry(a, upper, f >> 1, f & 1)][side->slot];
+    const int32_t image =
+        *corner < h->nactive ? h->neighbour[face][*corner] : SLOT_UNKNOWN;
+    *corner = image >= h->nslots + h->njumps
+                  ? image
+                  : add_mirror(k, *corner, side->patch[face]);
+  }
+}
+
+void mirrors_make(struct linking *k) {
+  struct hierarchy *h = k->h;
+  for (int l = 0; l < h->nlevels; l++) {
+    h->level[l].mirror_begin = h->nmirrors;
+    for (int32_t n = 0; n < h->nsides; n++) {
+      if (linking_level(k, h->sides[n].slot) == l) link_faces(k, &h->sides[n]);
+    }
+    for (int32_t n = 0; n < h->nsides; n++) {
+      const struct side *side = &h->sides[n];
+      if (side->slot >= h->nowned || linking_level(k, side->slot) != l)
+        continue;
+      for (int f = 0; f < NFACE; f++) {
+        if (side->patch[f] >= 0) link_corners(k, side, f >> 1, f & 1);
+      }
+    }
+    h->level[l].mirror_end = h->nmirrors;
+  }
+}
