@@ -62,14 +62,16 @@ static double outline_distance(const struct diagnostics *a,
 
 /* "Never stops": a thin layer of fluid spreads as t^n, n = 1/5 if its viscosity
  * is constant, 2/7 if it is Bagnold's (h L = const, dL/dt ~ L^-5/2), and faster
- * while it is thick. "Comes to rest": moves by less than a cell. Both from 6 to
- * 8 sqrt(H0/g), when nothing that can stop has not. */
+ * while it is thick; of the three cells that the slower one moves, a front that
+ * takes cell after cell is known to a third of one. "Comes to rest": moves by
+ * less than a cell. Both from 6 to 8 sqrt(H0/g), when nothing that can stop has
+ * not. */
 static void report_spreading(struct report *report, const char *law,
                              const struct diagnostics d[2]) {
   if (strcmp(law, "newtonian") == 0 || strcmp(law, "bagnold") == 0) {
     const double n = strcmp(law, "bagnold") == 0 ? 2. / 7 : 1. / 5;
     report_at_least(report, law, "exponent of front over thin layer's", 7,
-                    log(d[1].front / d[0].front) / log(8. / 6) / n, 0.95);
+                    log(d[1].front / d[0].front) / log(8. / 6) / n, 0.9);
   } else {
     report_at_most(report, law, "cells the front moves from 6 to 8", 7,
                    fabs(d[1].front - d[0].front) / kCell, 1);
