@@ -34,20 +34,20 @@ static void mark_surface(const struct mesh *mesh, const double *c,
   }
 }
 
-/* Spread a mark by one leaf in every direction. */
+/* Spread a mark by one leaf in every direction. Children of a coarser leaf have
+ * its mark, what lies beyond a boundary none. */
 static void spread(const struct mesh *mesh, const struct bc *bc, double *mark,
                    double *scratch) {
   const struct bc *bcs[] = {bc};
   mesh_fill(mesh, 1, &mark, bcs, false);
+  for (int32_t k = mesh->begin_virtual; k < mesh->begin_boundary; k++) {
+    mark[k] = mark[mesh->virtual_leaf[(k - mesh->begin_virtual) / NCHILD]];
+  }
+  for (int32_t k = mesh->begin_boundary; k < mesh->ncells; k++) mark[k] = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double most = 0;
     for (int s = 0; s < NSTENCIL; s++) {
-      int32_t node = mesh->stencil[i][s];
-      if (node >= mesh->begin_boundary) continue;
-      if (node >= mesh->begin_virtual) {
-        node = mesh->virtual_leaf[(node - mesh->begin_virtual) / NCHILD];
-      }
-      most = max2(most, mark[node]);
+      most = max2(most, mark[mesh->stencil[i][s]]);
     }
     scratch[i] = most > 0;
   }

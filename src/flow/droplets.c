@@ -38,8 +38,8 @@ static void join(int32_t *parent, int32_t i, int32_t j) {
     parent[i] = j;
 }
 
-/* parent [nleaves]: the first leaf of the piece, -1 where there are no grains.
- */
+/* parent [nleaves]: an earlier leaf of the piece, the first one its own; -1
+ * where there are no grains. */
 static int32_t *join_leaves(const struct mesh *mesh, const double *c) {
   int32_t *parent = MEM_NEW(int32_t, (size_t)mesh->nleaves);
   for (int32_t i = 0; i < mesh->nleaves; i++)
@@ -49,8 +49,6 @@ static int32_t *join_leaves(const struct mesh *mesh, const double *c) {
     if (i < 0 || j < 0 || i >= mesh->nleaves || j >= mesh->nleaves) continue;
     if (parent[i] >= 0 && parent[j] >= 0) join(parent, i, j);
   }
-  for (int32_t i = 0; i < mesh->nleaves; i++)
-    if (parent[i] >= 0) parent[i] = find_root(parent, i);
   return parent;
 }
 
@@ -63,6 +61,8 @@ static int number_pieces(const struct mesh *mesh, const double *c,
   for (int32_t i = 0; i < mesh->nleaves; i++) n += parent[i] == i;
   *pieces = MEM_NEW(struct piece, (size_t)n);
   n = 0;
+  double volume = 0; /* of piece `last` up to here */
+  int32_t last = -1;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     if (parent[i] < 0) continue;
     if (parent[i] == i) {
@@ -71,8 +71,14 @@ static int number_pieces(const struct mesh *mesh, const double *c,
     } else {
       parent[i] = parent[parent[i]]; /* an earlier leaf, numbered already */
     }
-    (*pieces)[parent[i]].volume += c[i] * mesh->volume[i];
+    if (parent[i] != last) {
+      if (last >= 0) (*pieces)[last].volume = volume;
+      last = parent[i];
+      volume = (*pieces)[last].volume;
+    }
+    volume += c[i] * mesh->volume[i];
   }
+  if (last >= 0) (*pieces)[last].volume = volume;
   return n;
 }
 

@@ -76,14 +76,19 @@ static struct projection projection_of(struct simulation *sim) {
  * or as it is: what a flow at rest is about to feel. This rank only. */
 static double boundary_speed(const struct simulation *sim, bool per_leaf) {
   const struct mesh *mesh = sim->mesh;
-  double most = 0;
-  for (int32_t f = 0; f < mesh->nfaces; f++) {
-    const int patch = mesh->face_patch[f];
-    for (int e = 0; e < DIM && patch >= 0; e++) {
+  double speed[MESH_MAX_PATCHES] = {0}, fastest = 0, most = 0;
+  for (int patch = 0; patch < MESH_MAX_PATCHES; patch++) {
+    for (int e = 0; e < DIM; e++) {
       const struct bc *bc = &sim->u[e]->bc[patch];
       if (bc->type != BC_DIRICHLET) continue;
-      most = max2(most, fabs(bc->value) / (per_leaf ? mesh->face_h[f] : 1));
+      speed[patch] = max2(speed[patch], fabs(bc->value));
     }
+    fastest = max2(fastest, speed[patch]);
+  }
+  for (int32_t f = 0; f < mesh->nfaces && fastest > 0; f++) {
+    const int patch = mesh->face_patch[f];
+    if (patch < 0) continue;
+    most = max2(most, speed[patch] / (per_leaf ? mesh->face_h[f] : 1));
   }
   return most;
 }
@@ -111,9 +116,12 @@ static double acceleration_bound(const struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    for (int d = 0; d < DIM && sim->c->v[i] > 0.5; d++) {
-      most = max2(most, fabs(sim->g[d]->v[i]) / mesh->h[i]);
+    double largest = 0;
+    if (!(sim->c->v[i] > 0.5)) continue;
+    for (int d = 0; d < DIM; d++) {
+      largest = max2(largest, fabs(sim->g[d]->v[i]));
     }
+    most = max2(most, largest / mesh->h[i]);
   }
   most = mesh_max(mesh, most);
   return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;

@@ -134,8 +134,10 @@ static void measure_misfit(const double *c, const bool *known,
   for (int t = 0; t < TERMS; t++) sum[t] = 0.;
   for (int k = 0; k < (DIM == 3 ? 3 : 1); k++) {
     double layer[TERMS] = {0.};
+#pragma GCC unroll 3
     for (int j = 0; j < 3; j++) {
       double row[TERMS] = {0.};
+#pragma GCC unroll 3
       for (int i = 0; i < 3; i++) {
         int at[3] = {order[i], order[j], order[k]}, s = 0;
         double offset[DIM], local = alpha;

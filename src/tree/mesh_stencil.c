@@ -302,8 +302,28 @@ static void set_plans(struct mesh *mesh, const int32_t *average,
   }
 }
 
+/* The NCHILD leaves from i on, if they are siblings, see each other. */
+static void link_siblings(const struct mesh *mesh, int32_t i) {
+  const int last = NCHILD - 1, level = mesh->level[i];
+  if (level == 0 || i + last >= mesh->nleaves) return;
+  const uint64_t span = curve_span(level), key = mesh->key[i];
+  if (key % (NCHILD * span) != 0 || mesh->level[i + last] != level ||
+      mesh->key[i + last] != key + (uint64_t)last * span) {
+    return;
+  }
+  for (int a = 0; a < NCHILD; a++) {
+    for (int b = 0; b < NCHILD; b++) {
+      int s = STENCIL_CENTRE;
+      for (int d = 0; d < DIM; d++) {
+        s += stencil_step(d) * ((b >> d & 1) - (a >> d & 1));
+      }
+      mesh->stencil[i + a][s] = i + b;
+    }
+  }
+}
+
 /* Nodes by name. Leaves of one size are in each other's stencil, so half of
- * them need no search. */
+ * them, and those between siblings, need no search. */
 static void find_nodes(struct builder *b) {
   const struct mesh *mesh = b->mesh;
   enum { UNKNOWN = 0xff };
@@ -313,6 +333,7 @@ static void find_nodes(struct builder *b) {
     int32_t *node = mesh->stencil[i];
     curve_coordinates(b->curve, mesh->key[i], x);
     node[STENCIL_CENTRE] = i;
+    link_siblings(mesh, i);
     for (int s = 0; s < NSTENCIL; s++) {
       if (node[s] >= 0) continue;
       node[s] = stencil_node(b, x, s, mesh->level[i]);
