@@ -21,7 +21,7 @@
 
 #include "talus/solve.h"
 
-enum { KRYLOV_DIRECTIONS = 12, KRYLOV_PATIENCE = 12 };
+enum { KRYLOV_DIRECTIONS = 16, KRYLOV_PATIENCE = 12 };
 
 /* What GCR needs to know of a system of `nparts` arrays of `n` numbers each
  * (parts are the components of a vector; they follow one another, so vectors
