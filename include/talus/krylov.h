@@ -6,12 +6,12 @@
  *   z = M r, q = A z; make q orthogonal to the last KRYLOV_DIRECTIONS
  *   (z follows); a = <r, q> / <q, q>; x += a z; r -= a q
  * M may change from one call to the next [eisenstat_1983]. The inner product
- * is <a, b> = sum_i s_i a_i b_i with weights s given by the caller; s_i =
- * 1 / A_ii^2 measures a residual by the correction it asks for, without which
- * coefficients that differ by 1e4 or more stop the convergence (s_i = 1 / A_ii:
- * 15 % fewer iterations in a collapse with eta_max = 1e4, but discs of contrast
- * 1e6 do not converge). The test is on max |t_i r_i| with a scale t of its own;
- * a guess must pass it a million times better to need no iteration.
+ * is <a, b> = sum_i w_i^2 a_i b_i with weights w given by the caller; w_i =
+ * 1 / A_ii measures a residual by the correction it asks for, without which
+ * coefficients that differ by 1e4 or more stop the convergence (w_i^2 =
+ * 1 / A_ii: 15 % fewer iterations in a collapse with eta_max = 1e4, but discs
+ * of contrast 1e6 do not converge). The test is on max |r_i / rho_i|; a guess
+ * must pass it a million times better to need no iteration.
  */
 #ifndef TALUS_KRYLOV_H
 #define TALUS_KRYLOV_H
@@ -38,8 +38,8 @@ struct krylov_system {
   void (*precondition)(void *context, const double *r, double *z);
   /* q = A z. Collective. */
   void (*apply)(void *context, const double *z, double *q);
-  const double *weight; /* [nparts * n] s, > 0 */
-  const double *scale;  /* [n] t, same for all parts; NULL: 1 */
+  const float *weight;   /* [nparts * n] w, > 0 */
+  const double *density; /* [n] rho, same for all parts; NULL: 1 */
 };
 
 struct krylov_space; /* directions, kept between solves */
@@ -48,7 +48,7 @@ struct krylov_space *krylov_space_new(void);
 void krylov_space_destroy(struct krylov_space *space);
 int64_t krylov_space_bytes(const struct krylov_space *space);
 
-/* Reduce r (in: residual of x, out: of the result) until max |t r| <=
+/* Reduce r (in: residual of x, out: of the result) until max |r/rho| <=
  * tolerance, adding to x; r [nparts * n], x[nparts] [n]. KRYLOV_PATIENCE
  * iterations that leave the norm of r almost as it was, or a NaN, end it as
  * SOLVE_STALLED; x is then the iterate of least norm. Directions are allocated

@@ -157,10 +157,9 @@ static void set_beyond(struct hierarchy *h, const struct bc *const bc[]) {
 static void set_weights(struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
   for (int c = 0; c < h->nparts; c++) {
-    double *weight = h->weight + (int64_t)c * mesh->nleaves;
+    float *weight = h->weight + (int64_t)c * mesh->nleaves;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      const double d = h->inverse[c][h->leaf_slot[i]] * mesh->volume[i];
-      weight[i] = d * d;
+      weight[i] = (float)(h->inverse[c][h->leaf_slot[i]] * mesh->volume[i]);
     }
   }
 }

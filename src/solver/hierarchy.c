@@ -273,8 +273,7 @@ static void allocate(struct hierarchy *h) {
     h->coarse[k] = MEM_NEW(double, h->level[0].nowned);
   }
   h->residual = MEM_NEW(double, nleaves);
-  h->weight = MEM_NEW(double, nleaves);
-  h->scale = MEM_NEW(double, mesh->nleaves);
+  h->weight = MEM_NEW(float, nleaves);
   h->krylov = krylov_space_new();
 }
 
@@ -335,11 +334,11 @@ void hierarchy_destroy(struct hierarchy *h) {
     plan_end(copy);
   }
   krylov_space_destroy(h->krylov);
-  void *owned[] = {h->mirror,     h->sides,         h->beyond,    h->level,
-                   h->leaf_slot,  h->family_parent, h->wall,      h->jump,
-                   h->coarse[0],  h->coarse[1],     h->coarse[2], h->arena,
-                   h->residual,   h->weight,        h->scale,     h->rough,
-                   h->rough_begin};
+  void *owned[] = {
+      h->mirror,    h->sides,         h->beyond,    h->level,
+      h->leaf_slot, h->family_parent, h->wall,      h->jump,
+      h->coarse[0], h->coarse[1],     h->coarse[2], h->arena,
+      h->residual,  h->weight,        h->rough,     h->rough_begin};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   for (int f = 0; f < NFACE; f++) {
     mem_free(h->neighbour[f]);
@@ -362,6 +361,6 @@ int64_t hierarchy_bytes(const struct hierarchy *h) {
          h->njumps * (int64_t)sizeof(struct jump) +
          h->nmirrors * (int64_t)sizeof(struct mirror) +
          h->nsides * (int64_t)sizeof(struct side) +
-         h->nleaves * (index + (2 * DIM + 1) * number) +
+         h->nleaves * (index + DIM * (number + (int64_t)sizeof(float))) +
          krylov_space_bytes(h->krylov);
 }

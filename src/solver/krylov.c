@@ -67,16 +67,19 @@ struct lanes {
   double sum[LANES];
 };
 
-static void add_products(int64_t n, const double *w, const double *a,
+static void add_products(int64_t n, const float *w, const double *a,
                          const double *b, struct lanes *restrict lanes) {
   int64_t i = 0;
   for (; i + LANES <= n; i += LANES) {
     for (int k = 0; k < LANES; k++) {
-      lanes->sum[k] += w[i + k] * a[i + k] * b[i + k];
+      const double s = (double)w[i + k] * (double)w[i + k];
+      lanes->sum[k] += s * a[i + k] * b[i + k];
     }
   }
-  for (int k = 0; i + k < n; k++)
-    lanes->sum[k] += w[i + k] * a[i + k] * b[i + k];
+  for (int k = 0; i + k < n; k++) {
+    const double s = (double)w[i + k] * (double)w[i + k];
+    lanes->sum[k] += s * a[i + k] * b[i + k];
+  }
 }
 
 static double lanes_sum(const struct lanes *lanes) {
@@ -97,28 +100,29 @@ static inline uint64_t ordered(double v) {
   return bits;
 }
 
-static uint64_t max_product(int32_t n, const double *scale, const double *v) {
+static uint64_t max_ratio(int32_t n, const double *density, const double *v) {
   uint64_t lane[LANES] = {0}, most = 0;
   int32_t i = 0;
   for (; i + LANES <= n; i += LANES) {
     for (int k = 0; k < LANES; k++) {
-      const uint64_t a = ordered(scale ? scale[i + k] * v[i + k] : v[i + k]);
+      const uint64_t a =
+          ordered(density ? v[i + k] / density[i + k] : v[i + k]);
       lane[k] = a > lane[k] ? a : lane[k];
     }
   }
   for (; i < n; i++) {
-    const uint64_t a = ordered(scale ? scale[i] * v[i] : v[i]);
+    const uint64_t a = ordered(density ? v[i] / density[i] : v[i]);
     most = a > most ? a : most;
   }
   for (int k = 0; k < LANES; k++) most = lane[k] > most ? lane[k] : most;
   return most;
 }
 
-/* max |t r|; NaN if any is. */
+/* max |r/rho|; NaN if any is. */
 static double max_residual(const struct krylov_system *s, const double *r) {
   uint64_t most = 0;
   for (int c = 0; c < s->nparts; c++) {
-    const uint64_t a = max_product(s->n, s->scale, r + (int64_t)c * s->n);
+    const uint64_t a = max_ratio(s->n, s->density, r + (int64_t)c * s->n);
     most = a > most ? a : most;
   }
   MPI_CHECK(

@@ -102,10 +102,10 @@ struct hierarchy {
   /* Work of the outer solver. Cells and faces share the arena with e and r:
    * neither is needed while the other is in use */
   double *arena;
-  double *work_cells;        /* [DIM * ncells] */
-  double *work_faces;        /* [DIM * nfaces_all] */
-  double *residual, *weight; /* [DIM * nleaves] */
-  double *scale;             /* [nleaves] */
+  double *work_cells; /* [DIM * ncells] */
+  double *work_faces; /* [DIM * nfaces_all] */
+  double *residual;   /* [DIM * nleaves] */
+  float *weight;      /* [DIM * nleaves] */
   struct krylov_space *krylov;
 };
 
@@ -139,9 +139,9 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
  * `sign`; e likewise. Collective. */
 void cycle_run(struct hierarchy *h, double sign, const double *r, double *e);
 /* Before each cycle on r [nparts * nleaves]: if the first one has raised max
- * |t r|, t = scale [nleaves] or 1 if NULL, the others relax nodes near jumps
+ * |r / density|, [nleaves], NULL: 1, the others relax nodes near jumps
  * of the coefficient more often (rough.c). Uses h->e. Collective. */
-void rough_watch(struct hierarchy *h, const double *scale, const double *r);
+void rough_watch(struct hierarchy *h, const double *density, const double *r);
 /* The cycle on the trees alone (coarse.c): from h->r to h->e. */
 void coarse_solve(struct hierarchy *h);
 

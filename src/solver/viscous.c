@@ -128,7 +128,7 @@ static void apply(void *context, const double *z, double *q) {
 
 static void precondition(void *context, const double *r, double *z) {
   const struct context *k = context;
-  rough_watch(k->h, k->h->scale, r);
+  rough_watch(k->h, k->rho, r);
   cycle_run(k->h, 1, r, z);
 }
 
@@ -152,8 +152,6 @@ struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
     double *r = h->residual + (int64_t)e * n;
     for (int32_t i = 0; i < n; i++) r[i] = rhs[e][i] - r[i];
   }
-  double *scale = h->scale;
-  for (int32_t i = 0; i < n; i++) scale[i] = 1 / rho[i];
   const struct krylov_system system = {.comm = mesh->comm,
                                        .n = n,
                                        .nparts = DIM,
@@ -162,7 +160,7 @@ struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
                                        .precondition = precondition,
                                        .apply = apply,
                                        .weight = h->weight,
-                                       .scale = scale};
+                                       .density = rho};
   struct solve_stats stats = krylov_solve(&system, h->krylov, tolerance,
                                           max_iterations, h->residual, u);
   mesh_fill(mesh, DIM, u, bc, false);
