@@ -101,7 +101,7 @@ $(PROGRAMS) $(TESTS) $(PROOFS):
 setup: ## find what is missing and install it
 	@CC='$(CC)' CPPFLAGS='$(P4EST_CFLAGS)' PYTHON='$(PYTHON)' \
 	  tools/setup.sh $(WITH)
-demo: setup ## the column collapse, with pictures, in two minutes
+demo: setup ## column collapse with pictures: half a minute on two cores, mostly compiling
 	$(AGAIN) all
 	$(BUILD)/talus run examples/column.lua level=9 -o $(BUILD)/demo
 	$(BUILD)/talus plot $(BUILD)/demo

@@ -28,8 +28,8 @@
 -- mu(I)-rheology, J. Fluid Mech. 686 (2011) 378, section 2.3.1, equations 2.24
 -- to 2.26 and figures 2 and 3.
 --
--- Cost. 32 cells over H, to t = 200: one second on one core; 64 cells (trees =
--- 16): five.
+-- Cost. 32 cells over H, to t = 200: half a second on one core; 64 cells (trees
+-- = 16): two.
 --
 -- Expect. Friction balances weight at every depth, so mu(I) = tan(alpha): I is
 -- the same everywhere, I_alpha = I0 (tan(alpha) - mu_s)/(mu_s + delta_mu -

@@ -26,7 +26,8 @@
 -- mu(I)-rheology, J. Fluid Mech. 686 (2011) 378, section 2.3.3, equations 2.30
 -- to 2.32 and figure 5.
 --
--- Cost. 64 cells over the height, to t = 200: three seconds on one core.
+-- Cost. 64 cells over the height, to t = 200: one and a half seconds on
+-- one core.
 --
 -- Expect. The steady flow solves an ordinary differential equation per layer;
 -- they join in velocity and stress at y = H. The speed there falls from 2.066

@@ -11,7 +11,8 @@
 --
 -- Numbers. a = 1; mu(I) with 0.32, 0.28, 0.4; d/L0 = 0.05.
 --
--- Cost. Level 5 (8 cells to L0): a few thousand cells, a second on one core.
+-- Cost. Level 5 (8 cells to L0): a few thousand cells, half a second on one
+-- core.
 --
 -- Expect. A quarter of a low square pyramid with rounded corners.
 --

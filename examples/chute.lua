@@ -28,14 +28,14 @@
 -- for dense granular flows, Nature 441 (2006) 727, equation 1, give what is
 -- below.
 --
--- Cost. 64 cells over H, to t = 400: four seconds on one core.
+-- Cost. 64 cells over H, to t = 400: a second on one core.
 --
 -- Expect. Stress balances weight, tau = rho g x, so where tau < mu_s P nothing
 -- is sheared: a plug of half-width w_p = mu_s P/(rho g) = 8.96. Beyond it
 -- mu(I) = rho g x/P, and the shear rate adds up to a plug that falls at
 --   I0/d sqrt(P/rho) P/(rho g) (delta_mu ln(delta_mu/(mu_s + delta_mu - m))
 --     - (m - mu_s)),  m = rho g H/P = 0.5:
--- 6.418 sqrt(g d). Let go from rest, it is within 1 % of that at t = 190.
+-- 6.418 sqrt(g d). Let go from rest, it is within 1 % of that at t = 180.
 --
 -- Try. pressure=40: a slower, wider plug; pressure=44: the grains stay, their
 -- creep is rho g (H^2 - x^2)/(2 eta_max); I0=0.2: grains that resist more.

@@ -30,8 +30,8 @@
 -- a continuum: validity of a two-dimensional Navier-Stokes model with a
 -- mu(I)-rheology, J. Fluid Mech. 686 (2011) 378, section 3.2 and figure 10.
 --
--- Cost. Level 10 (32 cells to L0, about 9,000 cells): ten seconds on one core.
--- Level 9: two seconds; level 8: less than one.
+-- Cost. Level 10 (32 cells to L0, about 9,000 cells): three and a half seconds
+-- on one core. Level 9: one second; level 8: a fraction of one.
 --
 -- Expect. The column falls and spreads. At 2.28 sqrt(H0/g) the front is between
 -- 8.8 and 10.1 L0 and still advances (discrete grains: 9.7, Gerris: 8.95), the
@@ -41,7 +41,8 @@
 --
 -- Try. a=1.42 d=0.0219 stop=4.77 and a=0.5 d=0.0168 stop=2.83 (figures 9 and 8,
 -- to 4 sqrt(H0/g)); mu_s=0.4: a stiffer heap; delta_mu=0: friction that does
--- not know the rate; eta_max=100: the heap at rest creeps ten times slower.
+-- not know the rate; eta_max=100: the heap at rest creeps about five times
+-- slower (t = 12, level 8).
 
 local a = param("a", 6.26, "aspect ratio H0/L0 of the column")
 local size = param("size", 32, "edge of the box, in L0")

@@ -30,7 +30,7 @@
 -- both are in local balance with shear rate and pressure, and the flow is
 -- incompressible.
 --
--- Cost. Level 8 (2.0 mm): three seconds; level 7 (3.9 mm): half a second.
+-- Cost. Level 8 (2.0 mm): a second; level 7 (3.9 mm): a third of one.
 --
 -- Expect. The run-out falls with eta_S and rises with e_eff, the height the
 -- other way round: case 2, eta_S from 0.30 to 0.51: 35 to 23 cm and 4.7 to

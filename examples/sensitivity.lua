@@ -21,8 +21,8 @@
 -- section 3.3, figures 7, 11, 13, section 3.5.2; the signs also in P.-Y. Lagree
 -- et al., J. Fluid Mech. 686 (2011) 378, figure 16.
 --
--- Cost. Level 7 (16 cells to L0, about 1,300 cells): half a second a run;
--- level 8 two seconds.
+-- Cost. Level 7 (16 cells to L0, about 1,300 cells): a fifth of a second a
+-- run; level 8 one second.
 --
 -- Expect. Less friction of any kind runs further: the run-out falls with mu_s
 -- and delta_mu and rises with I0. Valette finds run-out ~ mu_s^-1.2 (0.32 to

@@ -34,8 +34,8 @@
 -- P.-Y. Lagree published with Basilisk, no slip on all walls too. Its rates
 -- follow C sqrt(g) (2 W)^(3/2), C = 1.50.
 --
--- Cost. Level 7, half of the silo: about 7,000 cells, three seconds on one
--- core; level 8: half a minute.
+-- Cost. Level 7, half of the silo: 7,200 to 7,900 cells, two seconds on one
+-- core; level 8: a quarter of a minute.
 --
 -- Expect. Once they have set off, at about t = 2, grains leave at a constant
 -- rate, 0.712 from the whole silo for W = 0.31325 (level 8: 0.732), whatever

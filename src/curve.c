@@ -9,6 +9,7 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 #include "talus/rheology.h"
+#include "talus/spelling.h"
 
 /* Decades of inertial numbers, and rows to each where limits are known and
  * where not. */
@@ -87,7 +88,10 @@ static void set_key(struct rheology *rheology, const char *word,
   value++;
   if (strcmp(name, "p") == 0) {
     *pressure = read_value(word, value);
-    if (*pressure < 0) USER_ERROR("%s: a pressure >= 0 is needed", word);
+    if (*pressure <= 0)
+      USER_ERROR(
+          "%s: a pressure > 0 is needed, as I = shear rate d/sqrt(p/rho)",
+          word);
   } else if (strcmp(name, "regularisation") == 0) {
     if (rheology_set_regularisation(rheology, value) != 0)
       USER_ERROR("%s: clip, papanastasiou or bercovier_engelman", word);
@@ -155,9 +159,8 @@ static void print_csv(const struct curve *curve) {
   printf("I,shear_rate,eta,mu,nu,state\n");
   for (int i = 0; i < curve->n; i++) {
     const double p = curve->p[i];
-    printf("%.10g,%.10g,%.10g,%.10g,", p > 0 ? curve->I[i] : NAN,
-           curve->rate[i], curve->eta[i],
-           p > 0 ? curve->eta[i] * curve->rate[i] / p : NAN);
+    printf("%.10g,%.10g,%.10g,%.10g,", curve->I[i], curve->rate[i],
+           curve->eta[i], curve->eta[i] * curve->rate[i] / p);
     if (curve->nu != NULL) printf("%.10g", curve->nu[i]);
     printf(",");
     if (curve->state != NULL) printf("%g", curve->state[i]);
@@ -171,9 +174,8 @@ static void print_columns(const struct curve *curve) {
   printf(curve->state != NULL ? "  state\n" : "\n");
   for (int i = 0; i < curve->n; i++) {
     const double p = curve->p[i];
-    printf("%13.6g %13.6g %13.6g %13.6g", p > 0 ? curve->I[i] : NAN,
-           curve->rate[i], curve->eta[i],
-           p > 0 ? curve->eta[i] * curve->rate[i] / p : NAN);
+    printf("%13.6g %13.6g %13.6g %13.6g", curve->I[i], curve->rate[i],
+           curve->eta[i], curve->eta[i] * curve->rate[i] / p);
     if (curve->nu != NULL) printf(" %13.6g", curve->nu[i]);
     if (curve->state != NULL) printf("  %s", STATES[(int)curve->state[i]]);
     printf("\n");
@@ -187,7 +189,7 @@ static void print_summary(const struct rheology *rheology, double pressure,
   printf("p = %g, d = %g, rho = %g\n", pressure,
          value_or_one(rheology, "d", "d"),
          value_or_one(rheology, "rho", "rho_d"));
-  if (rheology->model->limits != NULL && pressure > 0) {
+  if (rheology->model->limits != NULL) {
     rheology->model->limits(rheology, I);
     rate = I[0] * scale;
     rheology_eval(rheology, 0, 1, &rate, &pressure, &eta);
@@ -206,8 +208,7 @@ static void print_curve(const struct rheology *rheology, double pressure,
                         bool csv) {
   const double d = value_or_one(rheology, "d", "d");
   const double rho = value_or_one(rheology, "rho", "rho_d");
-  /* Without pressure there is no inertial number: take it as a rate. */
-  const double scale = pressure > 0 ? sqrt(pressure / rho) / d : 1;
+  const double scale = sqrt(pressure / rho) / d;
   struct curve curve = curve_new(rheology);
   for (int i = 0; i < curve.n; i++) {
     curve.rate[i] = curve.I[i] * scale;
@@ -230,14 +231,27 @@ static void set_units(struct rheology *rheology) {
       rheology_set(rheology, key->name, 1);
 }
 
+static _Noreturn void refuse_closure(const char *word) {
+  enum { MOST = 64 };
+  const char *names[MOST], *nearest;
+  char known[1024] = "";
+  size_t used = 0;
+  int n = 0;
+  for (; n < MOST && rheology_get(n) != NULL; n++) {
+    names[n] = rheology_get(n)->name;
+    if (used < sizeof known)
+      used +=
+          (size_t)snprintf(known + used, sizeof known - used, " %s", names[n]);
+  }
+  nearest = spelling_nearest(word, n, names);
+  USER_ERROR("unknown closure %s%s%s; known:%s", word,
+             nearest ? "; did you mean " : "", nearest ? nearest : "", known);
+}
+
 int command_rheology(int argc, char *argv[]) {
   if (argc == 0) return list_closures();
   const struct rheology_model *model = rheology_find(argv[0]);
-  if (model == NULL)
-    USER_ERROR(
-        "unknown closure %s; did you mean %s? `talus rheology` lists "
-        "them",
-        argv[0], rheology_nearest(argv[0]));
+  if (model == NULL) refuse_closure(argv[0]);
   struct rheology rheology;
   double pressure = 1;
   bool csv = false;

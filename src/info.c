@@ -57,6 +57,19 @@ static int info_csv(const char *path) {
   return EXIT_DONE;
 }
 
+/* Title and unit of each field that the root names. Collective. */
+static void print_fields(struct hdf5_file *file) {
+  char list[LENGTH], *rest = list;
+  if (!hdf5_read_text(file, "/", "fields", sizeof list, list)) return;
+  if (base_rank() == 0) printf("fields\n");
+  for (char *name; (name = strtok_r(rest, " ", &rest)) != NULL;) {
+    char title[256] = "", unit[64] = "";
+    hdf5_read_text(file, name, "title", sizeof title, title);
+    hdf5_read_text(file, name, "unit", sizeof unit, unit);
+    if (base_rank() == 0) printf("  %-20s %-8s %s\n", name, unit, title);
+  }
+}
+
 static int info_hdf5(const char *path) {
   struct hdf5_file *file = hdf5_open(MPI_COMM_WORLD, path);
   if (file == NULL) USER_ERROR("%s cannot be read as an HDF5 file", path);
@@ -83,6 +96,7 @@ static int info_hdf5(const char *path) {
            "\n  %-20s = %" PRId64 "\n",
            "dimension", dimension, "time", time, "step", step, "cells", rows);
   }
+  if (snapshot) print_fields(file);
   hdf5_close(file, false);
   return EXIT_DONE;
 }

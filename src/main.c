@@ -4,6 +4,7 @@
 #include <mpi.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "talus/case.h"
 #include "talus/command_line.h"
@@ -18,49 +19,6 @@ _Static_assert((int)FOREST_MAX_LEVEL ==
                    (DIM == 2 ? CASE_MAX_LEVEL_2D : CASE_MAX_LEVEL_3D),
                "a case may ask for what the forest can do");
 
-static const char USAGE[] =
-    "Talus simulates dry granular flow on adaptive grids.\n"
-    "\n"
-    "  talus run CASE.lua [name=value ...] [options]   run a case\n"
-    "  talus check CASE.lua [name=value ...]           check it, print every\n"
-    "                                                  parameter in use\n"
-    "  talus info DIR|FILE                             say what a run left\n"
-    "  talus plot DIR                                  pictures and a film\n"
-    "  talus rheology [NAME [key=value ...] [--csv]]   curve of a closure\n"
-    "  talus help [run|case|output]                    more about one thing\n"
-    "  talus --version\n"
-    "  mpirun -n N talus run ...                       on N cores\n"
-    "\n"
-    "Begin with: talus run examples/column.lua level=8\n";
-
-static const char RUN_HELP[] =
-    "talus run CASE.lua [name=value ...] [options]\n"
-    "\n"
-    "  name=value         overrides what the case declares by param();\n"
-    "                     lists as times=0.5,1,2\n"
-    "  -o DIR             output directory; default: name of the case + .out\n"
-    "  --restart          go on from DIR/checkpoint.h5\n"
-    "  --max-steps N      stop after N steps, with a checkpoint\n"
-    "  --max-walltime S   stop after S seconds, with a checkpoint\n"
-    "  --quiet            say nothing but errors\n"
-    "  --timing           say at the end where the time went\n"
-    "\n"
-    "Ctrl-C ends the step, writes a checkpoint and stops; the same command\n"
-    "with --restart goes on. Exit status: 0 done, 2 error of the user,\n"
-    "3 numerical failure, 4 memory, disk or MPI.\n";
-
-static const char OUTPUT_HELP[] =
-    "The output directory holds\n"
-    "  series.csv       a row per logged step: time, dt, cells, front,\n"
-    "                   height, volume, energies, iterations, ...\n"
-    "  profile.csv      outlines of the grains at output.profile_times and\n"
-    "                   at the end: time,x,height (3D: time,x,y,height)\n"
-    "  snapshots.xdmf   all fields on the adaptive grid, for ParaView, with\n"
-    "                   snapshot-*.h5\n"
-    "  checkpoint.h5    to go on with --restart\n"
-    "  parameters.csv   every parameter in use\n"
-    "  run.log          what happened\n";
-
 /* The text of the case, read by rank 0, on all ranks. */
 static char *read_everywhere(const char *path) {
   char *text = base_rank() == 0 ? case_read_text(path) : NULL;
@@ -73,6 +31,37 @@ static char *read_everywhere(const char *path) {
   return text;
 }
 
+/* Whether `talus plot` will find the outlines to compare with: as they stand,
+ * beside the run, or among the examples, where a case comes from. */
+static bool finds_reference(const struct command_line *line, const char *name) {
+  enum { LENGTH = 4096 };
+  const char *slash = strrchr(line->case_path, '/');
+  const int n = slash != NULL ? (int)(slash - line->case_path) + 1 : 0;
+  char path[3][LENGTH];
+  if (access(name, R_OK) == 0) return true;
+  if (*name == '/') return false;
+  snprintf(path[0], LENGTH, "%.*s%s", n, line->case_path, name);
+  const char *run = line->directory != NULL ? line->directory : ".";
+  snprintf(path[1], LENGTH, "%s/%s", run, name);
+  snprintf(path[2], LENGTH, "%s/../%s", run, name);
+  for (int k = 0; k < 3; k++)
+    if (access(path[k], R_OK) == 0) return true;
+  return false;
+}
+
+/* What is no error but worth a word. */
+static void say_notes(const struct command_line *line,
+                      const struct case_file *file) {
+  if (line->quiet || base_rank() != 0) return;
+  const char *reference = case_parameter(file, "reference");
+  if (case_note(file) != NULL) fprintf(stderr, "talus: %s\n", case_note(file));
+  if (reference != NULL && *reference && !finds_reference(line, reference))
+    fprintf(stderr,
+            "talus: warning: reference=%s: there is no such file here, beside "
+            "the case or beside the run; pictures will be without it\n",
+            reference);
+}
+
 static struct case_file *load_case(const struct command_line *line) {
   char *text = read_everywhere(line->case_path);
   struct case_file *file =
@@ -82,8 +71,7 @@ static struct case_file *load_case(const struct command_line *line) {
   if (dimension != DIM)
     USER_ERROR("%s is a case of dimension %d: start it with talus or talus%dd",
                line->case_path, dimension, dimension);
-  if (case_note(file) != NULL && !line->quiet && base_rank() == 0)
-    fprintf(stderr, "talus: %s\n", case_note(file));
+  say_notes(line, file);
   return file;
 }
 
@@ -116,30 +104,15 @@ static int command_check(int argc, char *argv[]) {
   struct command_line line;
   command_line_read(argc, argv, false, &line);
   struct case_file *file = load_case(&line);
-  if (base_rank() == 0) case_print(file, stdout);
-  case_destroy(file);
-  return EXIT_DONE;
-}
-
-static int command_help(int argc, char *argv[]) {
-  static const char *const TOPICS[] = {"run", "case", "output", "rheology"};
-  const char *topic = argc > 0 ? argv[0] : "";
-  if (argc == 0)
-    fputs(USAGE, stdout);
-  else if (strcmp(topic, "case") == 0 || strcmp(topic, "check") == 0)
-    case_help(stdout);
-  else if (strcmp(topic, "run") == 0)
-    fputs(RUN_HELP, stdout);
-  else if (strcmp(topic, "output") == 0 || strcmp(topic, "plot") == 0 ||
-           strcmp(topic, "info") == 0)
-    fputs(OUTPUT_HELP, stdout);
-  else if (strcmp(topic, "rheology") == 0)
-    return command_rheology(0, NULL);
-  else {
-    const char *nearest = spelling_nearest(topic, 4, TOPICS);
-    USER_ERROR("no help on %s%s%s; there is run, case, output, rheology", topic,
-               nearest ? "; did you mean " : "", nearest ? nearest : "");
+  if (base_rank() == 0) {
+    case_print(file, stdout);
+    fflush(stdout);
+    if (!case_finds_grains(file))
+      fprintf(stderr,
+              "talus: warning: grains.shape is positive nowhere that was "
+              "tried: are there grains?\n");
   }
+  case_destroy(file);
   return EXIT_DONE;
 }
 
@@ -178,12 +151,15 @@ static const struct command *find_command(const char *word) {
 
 int main(int argc, char *argv[]) {
   if (argc < 2) {
-    fputs(USAGE, stderr);
+    command_usage(stderr);
     return EXIT_USER;
   }
   const struct command *command = find_command(argv[1]);
-  if (command->parallel) base_begin(&argc, &argv);
   rheology_begin();
+  /* the script behind plot has options of its own */
+  if (command->run != command_plot && command_asks_help(argc - 2, argv + 2))
+    return command_help(1, &argv[1]);
+  if (command->parallel) base_begin(&argc, &argv);
   int status = command->run(argc - 2, argv + 2);
   if (command->parallel) base_end();
   return status;

@@ -35,10 +35,17 @@ static bool can_plot(const char *python) {
 }
 
 static const char *find_python(void) {
-  const char *const candidates[] = {getenv("TALUS_PYTHON"), "python3",
-                                    "/usr/bin/python3"};
-  for (int i = 0; i < 3; i++)
-    if (candidates[i] != NULL && can_plot(candidates[i])) return candidates[i];
+  const char *const candidates[] = {"python3", "/usr/bin/python3"};
+  const char *chosen = getenv("TALUS_PYTHON");
+  if (chosen != NULL && *chosen != '\0') {
+    if (can_plot(chosen)) return chosen;
+    USER_ERROR(
+        "TALUS_PYTHON=%s: there is no such program, or it has no h5py and "
+        "matplotlib",
+        chosen);
+  }
+  for (int i = 0; i < 2; i++)
+    if (can_plot(candidates[i])) return candidates[i];
   USER_ERROR(
       "no Python with h5py and matplotlib: install them (Debian: apt install "
       "python3-h5py python3-matplotlib), or say in TALUS_PYTHON which "

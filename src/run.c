@@ -19,6 +19,7 @@
 #include "talus/memory.h"
 #include "talus/mesh.h"
 #include "talus/output.h"
+#include "talus/parameter_changes.h"
 #include "talus/params.h"
 #include "talus/profile.h"
 #include "talus/progress.h"
@@ -143,6 +144,15 @@ static void write_row(struct run *run, const struct diagnostics *d) {
   series_write(run->series, &row);
 }
 
+/* Before the first step: is there anything to simulate? */
+static void check_grains(const struct run *run, double volume) {
+  static const char *const text =
+      "grains.shape is positive nowhere: there are no grains";
+  if (run->params->single_phase || volume > 0 || base_rank() != 0) return;
+  fprintf(stderr, "talus: warning: %s\n", text);
+  log_info("warning: %s", text);
+}
+
 /* Rows of both tables, where they are due. */
 static void write_tables(struct run *run) {
   struct simulation *sim = run->sim;
@@ -156,7 +166,10 @@ static void write_tables(struct run *run) {
   step_desynchronise(sim);
   sim->energy.kinetic = d.kinetic;
   sim->energy.potential = d.potential;
-  if (sim->step == 0) sim->energy.initial = d.kinetic + d.potential;
+  if (sim->step == 0) {
+    sim->energy.initial = d.kinetic + d.potential;
+    check_grains(run, d.volume);
+  }
   if (row) write_row(run, &d);
   if (outline)
     profile_write(run->profile, sim->time, d.outline.n, d.outline.first,
@@ -198,30 +211,36 @@ static void write_checkpoint(struct run *run) {
 
 /* Begin and end */
 
-/* Say which lines of parameters.csv differ from those of the run that goes on:
- * most of them can be changed, but the grains are those of the first part. */
-static void say_changes(const struct run *run, FILE *before) {
-  char line[1024];
-  while (fgets(line, sizeof line, before)) {
-    line[strcspn(line, "\n")] = '\0';
-    const size_t length = strlen(line);
-    const char *at = length > 0 ? strstr(run->parameters, line) : line;
-    if (at && (at[length] == '\n' || at[length] == '\0')) continue;
-    log_info("restart with another parameter, it was: %s", line);
-    fprintf(stderr, "talus: restart with another parameter, it was: %s\n",
-            line);
-  }
-}
-
+/* Most parameters can be changed, but the grains are those of the first part:
+ * so say which were. */
 static void compare_parameters(const struct run *run) {
   if (base_rank() != 0 || !run->options->restart) return;
   char *path = output_path(run->options->directory, "parameters.csv");
-  FILE *before = fopen(path, "r");
-  if (before) {
-    say_changes(run, before);
-    fclose(before);
-  }
+  parameter_changes_say(path, run->parameters);
   mem_free(path);
+}
+
+/* The time that the run in the directory came to, if there is one. */
+static bool find_old_run(const char *directory, double *time) {
+  bool found = false;
+  if (base_rank() == 0) {
+    char *path = output_path(directory, "series.csv"), line[1024];
+    FILE *f = fopen(path, "r");
+    mem_free(path);
+    while (f != NULL && fgets(line, sizeof line, f) != NULL)
+      if (sscanf(line, "%*d,%lf,", time) == 1) found = true;
+    if (f != NULL) fclose(f);
+  }
+  return found;
+}
+
+static void replace_old_run(const struct run *run) {
+  const char *directory = run->options->directory;
+  double time = 0;
+  if (find_old_run(directory, &time))
+    progress_say(run->progress, "%s held a run to time %.6g; it is replaced",
+                 directory, time);
+  output_remove_run(directory);
 }
 
 static void open_files(struct run *run) {
@@ -229,10 +248,12 @@ static void open_files(struct run *run) {
   const char *directory = run->options->directory;
   bool keep = run->options->restart;
   output_make_directory(directory);
+  run->progress =
+      progress_new(sim->time, run->params->stop, run->options->quiet);
   if (keep)
     output_remove_snapshots(directory, (int)run->before.snapshots);
   else
-    output_remove_run(directory);
+    replace_old_run(run);
   char *path = output_path(directory, "run.log");
   if (!log_open(path)) USER_ERROR("cannot write '%s'", path);
   mem_free(path);
@@ -243,8 +264,6 @@ static void open_files(struct run *run) {
   run->series = series_open(directory, keep, sim->step);
   run->profile = profile_open(directory, keep, last);
   run->snapshots = snapshots_new(directory, (int)run->before.snapshots);
-  run->progress =
-      progress_new(sim->time, run->params->stop, run->options->quiet);
 }
 
 static void say_begin(const struct run *run) {

@@ -18,6 +18,7 @@
 #ifndef TALUS_CASE_H
 #define TALUS_CASE_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "talus/params.h"
@@ -57,6 +58,14 @@ const struct params *case_params(const struct case_file *file);
 /* Something about the case that is no error but worth a word, as one line; NULL
  * if there is nothing. */
 const char *case_note(const struct case_file *file);
+
+/* The value of what the case declares as param(name, ...), as text that the
+ * case owns; NULL if it declares no such thing. */
+const char *case_parameter(const struct case_file *file, const char *name);
+
+/* Whether grains.shape is positive at a point of a lattice of some 70,000 over
+ * the box, or the grains fill it. */
+bool case_finds_grains(const struct case_file *file);
 
 /* Prints every parameter in use, one `key = value  unit  meaning` a line, those
  * declared by param() first. Defaults are marked. */

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum { COMMAND_LINE_MAX_OVERRIDES = 64 };
 
@@ -35,5 +36,11 @@ bool command_own_directory(char *directory, int size);
 int command_info(int argc, char *argv[]);
 int command_plot(int argc, char *argv[]);
 int command_rheology(int argc, char *argv[]);
+int command_help(int argc, char *argv[]);
+
+/* The commands, one a line. */
+void command_usage(FILE *f);
+/* Whether one of the words behind a command is --help or -h. */
+bool command_asks_help(int argc, char *argv[]);
 
 #endif

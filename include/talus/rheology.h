@@ -148,9 +148,6 @@ const struct rheology_model *rheology_find(const char *name);
 int rheology_count(void);
 const struct rheology_model *rheology_get(int i);
 
-/* The known name that looks most like `name`, for error messages. */
-const char *rheology_nearest(const char *name);
-
 /*
  * Key i of a model: its own, then those all models share (eta_min, eta_max,
  * gamma_r, cohesion); NULL past the last. This is the list to loop over for

@@ -98,6 +98,12 @@ const char *case_note(const struct case_file *file) {
   return *file->note != '\0' ? file->note : NULL;
 }
 
+const char *case_parameter(const struct case_file *file, const char *name) {
+  for (int i = 0; i < file->ndeclared; i++)
+    if (strcmp(file->rows[i].key, name) == 0) return file->rows[i].value;
+  return NULL;
+}
+
 int case_dimension(const char *path, int noverrides, char *const overrides[]) {
   char *text = case_read_text(path);
   if (text == NULL) return 0;

@@ -135,12 +135,12 @@ const char *function_name(struct case_function *function, const double x[3]) {
 
 enum { TRIES = 9 }; /* along each axis */
 
-/* Point i of a lattice over the box, corners included. */
-static void try_point(const struct params *params, int i, double x[3]) {
-  for (int d = 0; d < 3; d++, i /= TRIES)
+/* Point i of a lattice over the box, n along each axis, corners included. */
+static void try_point(const struct params *params, int i, int n, double x[3]) {
+  for (int d = 0; d < 3; d++, i /= n)
     x[d] = d < params->dimension
                ? params->origin[d] +
-                     params->size * params->trees[d] * (i % TRIES) / (TRIES - 1)
+                     params->size * params->trees[d] * (i % n) / (n - 1)
                : 0;
 }
 
@@ -166,11 +166,24 @@ void function_try_all(struct case_file *file) {
       file->params.dimension == 2 ? TRIES * TRIES : TRIES * TRIES * TRIES;
   for (int i = 0; i < npoints; i++) {
     double x[3] = {0};
-    try_point(&file->params, i, x);
+    try_point(&file->params, i, TRIES, x);
     if (file->params.boundary_select != NULL) try_sides(file, x, i);
     for (int k = 0; k < file->nfunctions; k++)
       if (!chooses_boundary(file, &file->functions[k]) &&
           !file->functions[k].is_viscosity)
         eval(&file->functions[k], x);
   }
+}
+
+bool case_finds_grains(const struct case_file *file) {
+  const struct params *params = &file->params;
+  const int n = params->dimension == 2 ? 257 : 41;
+  const int npoints = params->dimension == 2 ? n * n : n * n * n;
+  if (params->shape.eval == NULL) return true; /* they fill the box */
+  for (int i = 0; i < npoints; i++) {
+    double x[3] = {0};
+    try_point(params, i, n, x);
+    if (eval(params->shape.context, x) > 0) return true;
+  }
+  return false;
 }

@@ -182,8 +182,12 @@ static void push_element(struct case_file *file, const struct key *key,
   lua_State *L = file->L;
   int n = file->params.dimension;
   if (!lua_istable(L, -1)) fail_value(file, key, path);
-  if (d == 0) read_known_only(file, path, 0, NULL, n);
-  if ((int)lua_rawlen(L, -1) != n) fail_value(file, key, path);
+  const int length = (int)lua_rawlen(L, -1);
+  if (d == 0) read_known_only(file, path, 0, NULL, length);
+  if (length != n)
+    read_fail_at(file, path, "%s: %d %s are needed, %d given (%s)", path, n,
+                 key->type == KEY_INTEGERS ? "integers" : "numbers", length,
+                 key->help);
   lua_rawgeti(L, -1, d + 1);
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/spelling.h"
 
+#include <ctype.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -9,6 +11,10 @@ enum { LONGEST = 63 }; /* letters compared */
 static int length(const char *word) {
   size_t n = strlen(word);
   return n < LONGEST ? (int)n : LONGEST;
+}
+
+static bool differ(char a, char b) {
+  return tolower((unsigned char)a) != tolower((unsigned char)b);
 }
 
 static int least(int a, int b) { return a < b ? a : b; }
@@ -22,9 +28,10 @@ static int distance(const char *a, const char *b) {
   for (int i = 1; i <= na; i++) {
     row[2][0] = i;
     for (int j = 1; j <= nb; j++) {
-      int d = row[1][j - 1] + (a[i - 1] != b[j - 1]);
+      int d = row[1][j - 1] + differ(a[i - 1], b[j - 1]);
       d = least(d, least(row[1][j], row[2][j - 1]) + 1);
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+      if (i > 1 && j > 1 && !differ(a[i - 1], b[j - 2]) &&
+          !differ(a[i - 2], b[j - 1]))
         d = least(d, row[0][j - 2] + 1);
       row[2][j] = d;
     }
@@ -42,7 +49,7 @@ const char *spelling_nearest(const char *word, int n,
     int d = distance(word, words[i]);
     int longer = length(word);
     if (length(words[i]) > longer) longer = length(words[i]);
-    if (2 * d > longer || (best != NULL && d >= best_distance)) continue;
+    if (3 * d > longer || (best != NULL && d >= best_distance)) continue;
     best = words[i];
     best_distance = d;
   }

@@ -39,34 +39,6 @@ const struct rheology_model *rheology_find(const char *name) {
   return NULL;
 }
 
-/* Levenshtein distance; of b only the first 63 characters count. */
-static int edit_distance(const char *a, const char *b) {
-  enum { LONGEST = 63 };
-  int row[LONGEST + 1], nb = 0;
-  while (b[nb] != '\0' && nb < LONGEST) nb++;
-  for (int j = 0; j <= nb; j++) row[j] = j;
-  for (int i = 1; *a != '\0'; a++, i++) {
-    int diagonal = row[0];
-    row[0] = i;
-    for (int j = 1; j <= nb; j++) {
-      int change = diagonal + (*a != b[j - 1]);
-      int add = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
-      diagonal = row[j];
-      row[j] = change < add ? change : add;
-    }
-  }
-  return row[nb];
-}
-
-const char *rheology_nearest(const char *name) {
-  int best = 0;
-  for (int i = 1; i < NMODELS; i++)
-    if (edit_distance(name, MODELS[i]->name) <
-        edit_distance(name, MODELS[best]->name))
-      best = i;
-  return MODELS[best]->name;
-}
-
 const struct rheology_key *rheology_key(const struct rheology_model *model,
                                         int i) {
   if (i < 0) return NULL;

@@ -87,8 +87,12 @@ bad_edit stop_0 'stop_0.lua:9: output.stop = 0: a number > 0' 'stop = 1' \
   'stop = 0'
 bad_edit level_min 'level_min.lua:2: domain.level_min = 7 is above' \
   'level = 5' 'level = 5, level_min = 7'
-bad_edit short_list 'short_list.lua:3: gravity.*a list of 2 numbers' \
+bad_edit short_list 'short_list.lua:3: gravity: 2 numbers are needed, 1 given' \
   '{ 0, -1 }' '{ -1 }'
+bad_edit long_list 'long_list.lua:3: gravity: 2 numbers are needed, 3 given' \
+  '{ 0, -1 }' '{ 0, -1, 0 }'
+bad_edit list_key 'list_key.lua:3: unknown key gravity.z = 1' \
+  '{ 0, -1 }' '{ 0, -1, z = 1 }'
 bad_edit closure 'closure.lua:4: grains.rheology = "mui": .*mu_i' '"mu_i"' \
   '"mui"'
 bad_edit closure_key 'closure_key.lua:4: .*rheology.mus = 1.*mu_s' 'd = 0.05' \
@@ -195,6 +199,10 @@ refuses directory_as_case 'cases: Is a directory' run ../cases
 refuses unknown_command 'unknown command rum; did you mean run' rum
 refuses unknown_option 'unknown option --restrat; did you mean --restart' \
   run ../cases/good.lua --restrat
+refuses no_likeness 'unknown command walk; `talus help`' walk
+refuses unknown_topic 'no help on outptu; did you mean output' help outptu
+TALUS_PYTHON=$directory/none refuses no_python 'TALUS_PYTHON=.*no such program' \
+  plot ../cases
 refuses option_value '--max-steps x: a number of steps' \
   run ../cases/good.lua --max-steps x
 refuses no_case 'which case' run
@@ -202,5 +210,45 @@ refuses unwritable "output directory '../cases/good.lua/out'" \
   run ../cases/good.lua -o ../cases/good.lua/out
 refuses unwritable_proc "output directory '/proc/talus'" \
   run ../cases/good.lua -o /proc/talus
+
+# Help where it is looked for
+shows() {
+  local pattern=$1
+  shift
+  "$build/talus" "$@" > output 2>&1 || complain "$*: exit status $?"
+  grep -qE "$pattern" output || complain "$*: nothing matches $pattern"
+}
+shows '^talus run CASE.lua' run --help
+shows '^talus run CASE.lua' run cases/good.lua -h
+for page in run check info plot; do
+  shows "^talus $page " help $page
+done
+shows '^  fraction ' help output
+# every column of series.csv is in the page, and grains are missed
+none=${good/return math.min(1 - x, 1 - y)/return -1}
+echo "${none/stop = 1/stop = 0.01}" > cases/no_grains.lua
+shows 'warning: grains.shape is positive nowhere that was tried' \
+  check cases/no_grains.lua
+shows 'warning: grains.shape is positive nowhere: there are no' \
+  run cases/no_grains.lua -o no_grains
+shows '^  fraction +1 +volume fraction' info no_grains/snapshot-000000.h5
+"$build/talus" help output > page
+for column in $(head -n 1 no_grains/series.csv | tr , ' '); do
+  grep -qE "^  (.*, )?$column(,| |\$)" page ||
+    complain "\`talus help output\` has no $column"
+done
+
+# Outlines to compare with that are not there
+echo "param('reference', '', 'outlines')
+$good" > cases/reference.lua
+touch cases/there.csv
+shows 'warning: reference=none.csv: there is no such file' \
+  check cases/reference.lua reference=none.csv
+"$build/talus" check cases/reference.lua reference=there.csv > output 2>&1
+grep -q warning output && complain "a reference beside the case is not seen"
+
+# A run that is replaced
+shows '^no_grains held a run to time 0.01; it is replaced$' \
+  run cases/no_grains.lua -o no_grains
 
 [ "$failures" -eq 0 ]

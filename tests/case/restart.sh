@@ -87,6 +87,11 @@ for n in 1 3; do
   same "box on $n" box-$n pieces-$n
 done
 cp -r parts-1 again
+must 1 talus2d run $column -o again --quiet --restart stop=2.5
+[ "$(cat output)" = "talus: restart with stop = 2.5 (was 2)" ] ||
+  complain "another stop"
+rm -r again
+cp -r parts-1 again
 must 1 talus2d run $column -o again --quiet --restart
 same "nothing left to do" whole-1 again
 

@@ -29,6 +29,8 @@ says 'I_tran = 1.171.*mu_tran = 0.542.*I_max = 2.105' lee_huang p=1000
 says 'user: viscosity = .*only a case file' user
 says 'lee_huang: nu_min < nu_0 < nu_max' lee_huang nu_0=0.64
 says 'closure muI; did you mean mu_i' muI
+says 'closure bogus; known: newtonian' bogus
+says 'p=0: a pressure > 0' mu_i d=0.001 p=0
 
 # 100 rows a decade from 1e-4 to I_max, one at the kink, where mu is largest.
 "$talus" rheology lee_huang p=1000 --csv | awk -F, '

@@ -482,6 +482,9 @@ START_TEST(nearest_word_is_found) {
   ck_assert_str_eq(spelling_nearest("levle", 4, WORDS), "level");
   ck_assert_str_eq(spelling_nearest("levelmin", 4, WORDS), "level_min");
   ck_assert_str_eq(spelling_nearest("sise", 4, WORDS), "size");
+  ck_assert_str_eq(spelling_nearest("SIZE", 4, WORDS), "size");
+  ck_assert_ptr_null(spelling_nearest("sine", 2, WORDS));
+  ck_assert_ptr_null(spelling_nearest("lathe", 4, WORDS));
   ck_assert_ptr_null(spelling_nearest("gravity", 4, WORDS));
   ck_assert_ptr_null(spelling_nearest("", 4, WORDS));
 }

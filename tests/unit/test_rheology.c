@@ -470,15 +470,6 @@ START_TEST(rheology_value_reads_what_set_wrote) {
 }
 END_TEST
 
-START_TEST(rheology_nearest_finds_what_was_meant) {
-  ck_assert_str_eq(rheology_nearest("mu(I)"), "mu_i");
-  ck_assert_str_eq(rheology_nearest("Binghamm"), "bingham");
-  ck_assert_str_eq(rheology_nearest("newton"), "newtonian");
-  ck_assert_str_eq(rheology_nearest("coulomb"), "coulomb");
-  ck_assert_ptr_nonnull(rheology_nearest(""));
-}
-END_TEST
-
 Suite *rheology_suite(void) {
   Suite *suite = suite_create("rheology");
   TCase *formula = tcase_create("formula");
@@ -517,7 +508,6 @@ Suite *rheology_suite(void) {
   tcase_add_test(registry,
                  rheology_missing_names_the_first_key_without_a_value);
   tcase_add_test(registry, rheology_value_reads_what_set_wrote);
-  tcase_add_test(registry, rheology_nearest_finds_what_was_meant);
   suite_add_tcase(suite, registry);
   return suite;
 }

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a restart changes of the parameters of the run that goes on. */
+#ifndef TALUS_PARAMETER_CHANGES_H
+#define TALUS_PARAMETER_CHANGES_H
+
+/*
+ * Says `key = value (was value)` of the values that differ, one a line, on
+ * stderr and in the log. Those set on the command line, now or before, carry
+ * many others with them, which only the log names; if there is none of those,
+ * the case was edited, and stderr has them all. For one rank.
+ *   path  parameters.csv of the run so far; nothing is said if there is none
+ *   now   text of the parameters.csv to come
+ */
+void parameter_changes_say(const char *path, const char *now);
+
+#endif

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* talus help: what the program does, and a page on each command. */
+#include <stdio.h>
+#include <string.h>
+
+#include "talus/case.h"
+#include "talus/command_line.h"
+#include "talus/error.h"
+#include "talus/spelling.h"
+
+static const char USAGE[] =
+    "Talus simulates dry granular flow on adaptive grids.\n"
+    "\n"
+    "  talus run CASE.lua [name=value ...] [options]   run a case\n"
+    "  talus check CASE.lua [name=value ...]           check it, print every\n"
+    "                                                  parameter in use\n"
+    "  talus info DIR|FILE                             say what a run left\n"
+    "  talus plot DIR                                  pictures and a film\n"
+    "  talus rheology [NAME [key=value ...] [--csv]]   curve of a closure\n"
+    "  talus help [run|check|case|output|info|plot|rheology]\n"
+    "                                                  more about one thing\n"
+    "  talus --version\n"
+    "  mpirun -n N talus run ...                       on N cores\n"
+    "\n"
+    "Begin with: talus run examples/column.lua level=8\n";
+
+static const char RUN_HELP[] =
+    "talus run CASE.lua [name=value ...] [options]\n"
+    "\n"
+    "  name=value         overrides what the case declares by param();\n"
+    "                     lists as times=0.5,1,2\n"
+    "  -o DIR             output directory; default: name of the case + .out;\n"
+    "                     a run that it holds is replaced, pictures and all\n"
+    "  --restart          go on from DIR/checkpoint.h5\n"
+    "  --max-steps N      stop after N steps, with a checkpoint\n"
+    "  --max-walltime S   stop after S seconds, with a checkpoint\n"
+    "  --quiet            say nothing but warnings and errors\n"
+    "  --timing           say at the end where the time went\n"
+    "\n"
+    "Ctrl-C ends the step, writes a checkpoint and stops; the same command\n"
+    "with --restart goes on. Exit status: 0 done, 2 error of the user,\n"
+    "3 numerical failure, 4 memory, disk or MPI.\n";
+
+static const char CHECK_HELP[] =
+    "talus check CASE.lua [name=value ...]\n"
+    "\n"
+    "Reads the case as `talus run` would, says what is wrong with it, and\n"
+    "prints every parameter in use: key = value, unit, meaning, and whether\n"
+    "it is a default or from the command line. Nothing is computed or\n"
+    "written. `talus help case` lists the keys of a case.\n";
+
+static const char INFO_HELP[] =
+    "talus info DIR|FILE\n"
+    "\n"
+    "Of the directory of a run: the last row of series.csv, parameters and\n"
+    "files; of a .csv its columns and last row; of a snapshot or checkpoint\n"
+    "(.h5) its time, step and cells, and the fields of a snapshot.\n"
+    "`talus help output` says what they mean.\n";
+
+static const char PLOT_HELP[] =
+    "talus plot DIR [options]\n"
+    "\n"
+    "Draws into DIR\n"
+    "  outlines.png       the heap at the times of profile.csv, with those of\n"
+    "                     the file that the parameter `reference` names\n"
+    "  fields-final.png   grid, speed, pressure, viscosity at the end\n"
+    "  history.png        front, height, energies, cells against time\n"
+    "  film.gif           a frame per snapshot (film.mp4 where ffmpeg is)\n"
+    "\n"
+    "It needs a Python 3 with h5py and matplotlib: the one that TALUS_PYTHON\n"
+    "names, else python3 on PATH, else /usr/bin/python3. `talus plot --help`\n"
+    "lists the options.\n";
+
+/* Columns: include/talus/series.h. */
+static const char SERIES_HELP[] =
+    "The output directory holds\n"
+    "\n"
+    "series.csv, a row per step (output.series_every), in the units of the\n"
+    "case, here SI. \"The heap\" is the grains without droplets apart from "
+    "it.\n"
+    "  step                 number of the step; 0 is the start\n"
+    "  time, dt             at its end; its length, s\n"
+    "  cells                leaves of the tree\n"
+    "  front, height        where the heap ends, its x (3D: radius from its\n"
+    "                       axis), and its height, m\n"
+    "  volume               of all grains, m^2 (3D: m^3)\n"
+    "  kinetic, potential   energy of the grains, J/m (3D: J)\n"
+    "  dissipated           by viscosity since the start, J/m (3D: J)\n"
+    "  max_speed            of the grains, m/s\n"
+    "  pressure_iterations, viscous_iterations\n"
+    "                       of the solvers in this step\n"
+    "  wall_seconds         on the clock since the first step, s\n"
+    "  droplets             sets of grains apart from the heap\n"
+    "  droplet_volume       their volume, m^2 (3D: m^3)\n"
+    "  numerical            energy lost to the scheme: initial - kinetic -\n"
+    "                       potential - dissipated, J/m (3D: J)\n"
+    "  divergence_volume    sum over steps of c div u dt V, m^2 (3D: m^3)\n"
+    "  pressure_residual, viscous_residual\n"
+    "                       left by the solvers, in units of the tolerance\n"
+    "  mean_shear_rate      of the grains, 1/s: tells when they rest\n"
+    "  repeat_change        of the velocity in the last Picard repetition,\n"
+    "                       m/s; 0 without\n"
+    "\n"
+    "profile.csv, outlines of the heap at output.profile_times and at the\n"
+    "end: time,x,height (3D: time,x,y,height)\n";
+
+static const char SNAPSHOT_HELP[] =
+    "\n"
+    "snapshots.xdmf, to be opened in ParaView, and snapshot-*.h5: all fields\n"
+    "at the start, at the first step at or after each multiple of\n"
+    "output.snapshot_every, and at the end. Each file holds\n"
+    "  vertices [n][2 or 3]     corners, m\n"
+    "  cells [cells][4 or 8]    their rows in vertices; the mean of the\n"
+    "                           corners is the centre of the cell\n"
+    "  level                    of refinement\n"
+    "  fraction                 of the cell that is grains\n"
+    "  velocity [cells][3]      m/s\n"
+    "  pressure, viscosity      Pa, Pa s\n"
+    "  shear_rate               1/s\n"
+    "  tracers by their names, and what the closure gives (nu, state, ...;\n"
+    "  see `talus rheology`). `talus info FILE` lists the fields with their\n"
+    "  units. In Python:\n"
+    "    import h5py\n"
+    "    with h5py.File(\"column.out/snapshot-000000.h5\") as f:\n"
+    "        time, grains = f.attrs[\"time\"], f[\"fraction\"][:] > 0.5\n"
+    "        centre = f[\"vertices\"][:][f[\"cells\"][:]].mean(axis=1)\n"
+    "        print(time, centre[grains].max(axis=0))\n"
+    "\n"
+    "checkpoint.h5, to go on with --restart; parameters.csv, every parameter\n"
+    "in use; run.log, what happened. `talus plot DIR` adds outlines.png,\n"
+    "fields-final.png, history.png and film.gif (see `talus help plot`).\n";
+
+static void help_usage(void) { fputs(USAGE, stdout); }
+static void help_run(void) { fputs(RUN_HELP, stdout); }
+static void help_check(void) { fputs(CHECK_HELP, stdout); }
+static void help_info(void) { fputs(INFO_HELP, stdout); }
+static void help_plot(void) { fputs(PLOT_HELP, stdout); }
+static void help_case(void) { case_help(stdout); }
+static void help_rheology(void) { command_rheology(0, NULL); }
+
+static void help_output(void) {
+  fputs(SERIES_HELP, stdout);
+  fputs(SNAPSHOT_HELP, stdout);
+}
+
+static const struct {
+  const char *name;
+  void (*print)(void);
+} TOPICS[] = {{"run", help_run},           {"check", help_check},
+              {"case", help_case},         {"output", help_output},
+              {"info", help_info},         {"plot", help_plot},
+              {"rheology", help_rheology}, {"help", help_usage}};
+
+enum { NTOPICS = sizeof TOPICS / sizeof *TOPICS };
+
+void command_usage(FILE *f) { fputs(USAGE, f); }
+
+int command_help(int argc, char *argv[]) {
+  const char *names[NTOPICS], *topic = argc > 0 ? argv[0] : "help";
+  for (int i = 0; i < NTOPICS; i++) {
+    names[i] = TOPICS[i].name;
+    if (strcmp(topic, names[i]) != 0) continue;
+    TOPICS[i].print();
+    return EXIT_DONE;
+  }
+  const char *nearest = spelling_nearest(topic, NTOPICS, names);
+  USER_ERROR(
+      "no help on %s%s%s; there is run, check, case, output, info, plot, "
+      "rheology",
+      topic, nearest ? "; did you mean " : "", nearest ? nearest : "");
+}
+
+bool command_asks_help(int argc, char *argv[]) {
+  for (int i = 0; i < argc; i++)
+    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0)
+      return true;
+  return false;
+}
