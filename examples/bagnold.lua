@@ -55,6 +55,8 @@ local I0 = param("I0", 0.3, "inertial number at half that rise")
 local eta_max = param("eta_max", 1e4, "cap on viscosity, in rho sqrt(g H^3)")
 local tolerance = param("tolerance", 1e-8, "of the linear solvers")
 local picard = param("picard", 0, "repetitions within a step")
+param("length_unit", "$H$", "name of the unit, for pictures")
+param("time_unit", "$\\sqrt{H/g}$", "name of the unit, for pictures")
 
 local rho, g, H = 1, 1, 1               -- the units
 

@@ -52,6 +52,8 @@ local delta_mu = param("delta_mu", 0.26, "rise of friction at large I")
 local I0 = param("I0", 0.3, "inertial number at half that rise")
 local eta_max = param("eta_max", 1e4, "cap on viscosity, in rho sqrt(g H^3)")
 local tolerance = param("tolerance", 1e-8, "of the linear solvers")
+param("length_unit", "$H$", "name of the unit, for pictures")
+param("time_unit", "$\\sqrt{H/g}$", "name of the unit, for pictures")
 
 local rho, g, H = 1, 1, 1               -- the units
 local rho_f = ratio * rho

@@ -50,6 +50,8 @@ local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
 local eta_max = param("eta_max", 1e5, "cap on viscosity, in rho sqrt(g d^3)")
 local tolerance = param("tolerance", 1e-8, "of the linear solvers")
+param("length_unit", "$d$", "name of the unit, for pictures")
+param("time_unit", "$\\sqrt{d/g}$", "name of the unit, for pictures")
 
 local rho, g, d = 1, 1, 1               -- the units
 

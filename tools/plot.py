@@ -7,7 +7,9 @@
 Writes into DIR (or --output):
   outlines.png      the heap at the times of profile.csv
   fields-final.png  grid, speed, pressure, viscosity of the last snapshot
-  history.png       front, height, energies, leaves against time
+  history.png       front, height, energies, cells against time; energy
+                    not accounted for is what the scheme loses, what drives
+                    the flow brings and what leaves with grains
   film.gif          all snapshots (film.mp4 too where ffmpeg is installed)
 
 Outlines are laid over those of a reference (run_data.Reference) where the
@@ -68,11 +70,13 @@ class Units:
         self.time = parameters.get("time_unit", time)
 
     def field(self, unit):
-        """The unit of a field: as the file says, or in L0, g and density."""
+        """The unit of a field: as the file says, or in length, g, density."""
         if not self.plain:
             return "" if unit == "1" else unit
-        return {"m/s": r"$\sqrt{gL_0}$", "Pa": r"$\rho gL_0$",
-                "Pa s": r"$\rho\sqrt{gL_0^3}$"}.get(unit, "")
+        length = self.length.strip("$")
+        cube = f"({length})^3" if len(length) > 3 else f"{length}^3"
+        return {"m/s": rf"$\sqrt{{g\,{length}}}$", "Pa": rf"$\rho g\,{length}$",
+                "Pa s": rf"$\rho\sqrt{{g\,{cube}}}$"}.get(unit, "")
 
 
 def label(text, unit):
@@ -90,18 +94,20 @@ class Sheet:
 
     def __init__(self, count, columns, aspect, bars, lines=1, width=9.6):
         rows = -(-count // columns)
-        head, foot, left, gap = 0.02 + 0.2 * lines, 0.5, 0.6, 0.36
+        head, foot, left, gap = 0.02 + 0.2 * lines, 0.5, 0.7, 0.36
         right = 0.75 if bars else 0.15
         w = width / columns - left - right
         h = min(max(w / aspect, 0.5), 6.0)
         w = min(w, h * aspect) if h == 6.0 else w
         step = h + gap + (0.12 if columns == 1 else 0.15)
-        total = columns * (left + w + right), head + rows * step + foot - 0.1
+        # narrow panels stand apart, so that titles fit
+        pitch = max(left + w + right, 3.2 if columns > 1 else 5.0)
+        total = columns * pitch, head + rows * step + foot - 0.1
         self.fig = plt.figure(figsize=total)
         self.columns = columns
         self.axes, self.bars = [], []
         for k in range(count):
-            x = left + (k % columns) * (left + w + right)
+            x = left + (k % columns) * pitch
             y = total[1] - head - (k // columns + 1) * step + 0.1
             self.axes.append(self._add(x, y, w, h))
             if bars:
@@ -359,8 +365,8 @@ def plot_fields(options, parameters, units):
                 GRAINS, not options.no_grid)
     draw_contours(sheet.axes[0], snapshot, window, spacing, RED)
     draw_bar(sheet.bars[0], Normalize(0, 1), GRAINS)
-    sheet.axes[0].set_title("volume fraction of grains"
-                            + ("" if options.no_grid else ", and the grid"),
+    sheet.axes[0].set_title("volume fraction of grains" if options.no_grid
+                            else "grains and grid",
                             loc="left", pad=4)
     for ax, bar, (title, values, norm, cmap) in zip(
             sheet.axes[1:], sheet.bars[1:], panels):
@@ -375,7 +381,7 @@ def plot_fields(options, parameters, units):
     note = "".join(f"; dashed: {n}" for n in tracers_of(snapshot)[:1])
     sheet.head(f"{title_of(parameters, options.directory)}\n"
                f"$t$ = {snapshot.time:.4g} {units.time}, "
-               f"{snapshot.nleaves} leaves{note}")
+               f"{snapshot.nleaves} cells{note}")
     return save(sheet.fig, options, "fields-final.png")
 
 
@@ -393,13 +399,14 @@ def plot_history(options, parameters, units):
     ax.plot(t, s["front"], color=EARTH, label="front")
     ax.plot(t, s["height"], color=BLUE, label="height")
     ax.set_ylabel(label("length", units.length))
-    ax.set_ylim(bottom=0)
+    ax.set_ylim(bottom=min(0, 1.05 * np.min(s["front"])))
 
     ax = axes[0, 1]
     scale = abs(s["kinetic"][0] + s["potential"][0]) or 1.0
     for name, colour in (("potential", BLUE), ("kinetic", EARTH),
                          ("dissipated", RED), ("numerical", GREY)):
-        ax.plot(t, s[name] / scale, color=colour, label=name)
+        ax.plot(t, s[name] / scale, color=colour,
+                label=name if name != "numerical" else "not accounted for")
     ax.set_ylabel("energy / initial energy")
 
     ax = axes[1, 0]
@@ -408,8 +415,8 @@ def plot_history(options, parameters, units):
     ax.set_ylim(bottom=0)
 
     ax = axes[1, 1]
-    ax.plot(t, s["cells"], color=INK, label="leaves of the grid")
-    ax.set_ylabel("leaves")
+    ax.plot(t, s["cells"], color=INK, label="cells of the grid")
+    ax.set_ylabel("cells")
     ax.set_ylim(bottom=0)
     for ax in axes.flat:
         ax.margins(x=0)
@@ -422,16 +429,18 @@ def plot_history(options, parameters, units):
     axes[0, 1].set_title("energy of the grains", loc="left")
     rest = (run_data.arrest_time(s) if "mean_shear_rate" in s else None)
     if rest is not None:
-        axes[1, 0].set_title(f"fastest grains; at rest after {rest:.3g}",
-                             loc="left")
+        axes[1, 0].set_title(f"fastest grains; at rest after {rest:.3g} "
+                             f"{units.time}", loc="left")
         axes[1, 0].axvline(rest, color=GREY, lw=0.8)
     for ax in axes[1]:
         ax.set_xlabel(label("time", units.time))
     volume = s["volume"]
     change = np.max(np.abs(volume - volume[0])) / (abs(volume[0]) or 1.0)
-    change = f"{change:.1e}" if change > 0 else "none"
-    fig.suptitle(f"{title_of(parameters, options.directory)}\n"
-                 f"relative change of the volume of grains: {change}",
+    note = (f"relative change of the volume of grains: {change:.1e}"
+            if 0 < change < 1e-3 else "the volume of the grains is unchanged"
+            if change == 0 else
+            f"grains at the end: {volume[-1] / volume[0]:.3g} of the first")
+    fig.suptitle(f"{title_of(parameters, options.directory)}\n{note}",
                  fontsize=11)
     return save(fig, options, "history.png")
 
