@@ -5,11 +5,10 @@
   tools/plot.py DIR [--reference FILE] [--time-scale SCALE] [--no-film] ...
 
 Writes into DIR (or --output):
-  outlines.png      the heap at the times of profile.csv
+  outlines.png      the heap at the times of profile.csv; left out where the
+                    surface is level
   fields-final.png  grid, speed, pressure, viscosity of the last snapshot
-  history.png       front, height, energies, cells against time; energy
-                    not accounted for is what the scheme loses, what drives
-                    the flow brings and what leaves with grains
+  history.png       front, height, energies, cells against time
   film.gif          all snapshots (film.mp4 too where ffmpeg is installed)
 
 Outlines are laid over those of a reference (run_data.Reference) where the
@@ -24,9 +23,8 @@ import pathlib
 import shutil
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
+import run_data  # first: it says so if one of the next is missing
+from run_data import FRACTION, VELOCITY, Units, label
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
@@ -35,9 +33,6 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 from matplotlib.ticker import (FuncFormatter, LogLocator, MaxNLocator,
                                NullLocator)
-
-import run_data
-from run_data import FRACTION, VELOCITY
 
 SAND, EARTH, INK = "#e3c48d", "#8a5a22", "#222222"
 BLUE, RED, GREEN, GREY = "#24639c", "#b5382b", "#3d7d3a", "#777777"
@@ -56,33 +51,6 @@ plt.rcParams.update({
 })
 
 
-class Units:
-    """Words for the axes."""
-
-    def __init__(self, parameters):
-        gravity = [run_data.number({"g": s}, "g", 0.0)
-                   for s in parameters.get("gravity", "").strip("{}[] ")
-                   .replace(";", ",").split(",") if s.strip()]
-        plain = abs(np.hypot.reduce(gravity or [0.0]) - 1) < 1e-12
-        self.plain = plain
-        length, time = (r"$L_0$", r"$\sqrt{L_0/g}$") if plain else ("m", "s")
-        self.length = parameters.get("length_unit", length)
-        self.time = parameters.get("time_unit", time)
-
-    def field(self, unit):
-        """The unit of a field: as the file says, or in length, g, density."""
-        if not self.plain:
-            return "" if unit == "1" else unit
-        length = self.length.strip("$")
-        cube = f"({length})^3" if len(length) > 3 else f"{length}^3"
-        return {"m/s": rf"$\sqrt{{g\,{length}}}$", "Pa": rf"$\rho g\,{length}$",
-                "Pa s": rf"$\rho\sqrt{{g\,{cube}}}$"}.get(unit, "")
-
-
-def label(text, unit):
-    return f"{text} ({unit})" if unit else text
-
-
 def title_of(parameters, directory):
     title = parameters.get("title", "").strip()
     return title or pathlib.Path(directory).resolve().name
@@ -90,24 +58,25 @@ def title_of(parameters, directory):
 
 class Sheet:
     """Panels of one shape in rows and columns, laid out in inches, each with
-    room for a colour bar if `bars`."""
+    room for a colour bar if `bars`; the titles have room however narrow the
+    panels are."""
 
     def __init__(self, count, columns, aspect, bars, lines=1, width=9.6):
         rows = -(-count // columns)
-        head, foot, left, gap = 0.02 + 0.2 * lines, 0.5, 0.7, 0.36
-        right = 0.75 if bars else 0.15
+        head, foot, left, gap = 0.06 + 0.23 * lines, 0.5, 0.78, 0.36
+        right = 0.75 if bars else 0.25
         w = width / columns - left - right
         h = min(max(w / aspect, 0.5), 6.0)
         w = min(w, h * aspect) if h == 6.0 else w
         step = h + gap + (0.12 if columns == 1 else 0.15)
-        # narrow panels stand apart, so that titles fit
-        pitch = max(left + w + right, 3.2 if columns > 1 else 5.0)
-        total = columns * pitch, head + rows * step + foot - 0.1
+        pitch = max(left + w + right, 2.3)
+        total = max(columns * pitch, 4.8), head + rows * step + foot - 0.1
         self.fig = plt.figure(figsize=total)
         self.columns = columns
         self.axes, self.bars = [], []
         for k in range(count):
-            x = left + (k % columns) * pitch
+            x = (left + (k % columns) * pitch
+                 + 0.5 * (total[0] - columns * pitch))
             y = total[1] - head - (k // columns + 1) * step + 0.1
             self.axes.append(self._add(x, y, w, h))
             if bars:
@@ -131,8 +100,10 @@ class Sheet:
 
     def head(self, text):
         size = self.fig.get_size_inches()
-        self.fig.text(0.5, 1 - 0.08 / size[1], text, ha="center", va="top",
-                      fontsize=11)
+        title = self.fig.text(0.5, 1 - 0.08 / size[1], text, ha="center",
+                              va="top", fontsize=11)
+        width = title.get_window_extent().width / self.fig.dpi
+        title.set_fontsize(11 * min(1, (size[0] - 0.2) / width))
 
 
 # Outlines
@@ -151,8 +122,9 @@ class Outline:
 
     def __init__(self, profile, reference, scale):
         self.time, x, height = profile
-        self.x = np.r_[x[0] - 0.5 * (x[1] - x[0]), x]
-        self.height = np.r_[height[0], height]
+        half = 0.5 * (x[1] - x[0])  # up to the sides of the box
+        self.x = np.r_[x[0] - half, x, x[-1] + half]
+        self.height = np.r_[height[0], height, height[-1]]
         self.other = None
         heights = reference.at(self.time / scale) if reference else None
         if heights is None:
@@ -170,24 +142,38 @@ class Outline:
         return max([self.height.max()]
                    + ([self.other[1].max()] if self.other else []))
 
-    def draw(self, ax, units, name):
+    def draw(self, ax, units, name, reference_unit):
         ax.fill_between(self.x, self.height, color=SAND, lw=0)
         ax.plot(self.x, self.height, color=EARTH, lw=1.4, label="Talus")
         text = f"$t$ = {self.time:.3g} {units.time}"
         if self.other:
             ax.plot(*self.other, "o", ms=2.8, mfc="none", mec=BLUE, mew=0.8,
                     label=name, clip_on=False)
-            text += (f"   (reference {self.other_time:.3g}, "
-                     f"difference {self.difference:.3f})")
+            text += (f"  (reference: {self.other_time:.3g} {reference_unit}; "
+                     f"differs by {100 * self.difference:.2g} %)")
         ax.set_title(text, loc="left", pad=3, fontsize=9)
 
 
+def has_shape(profiles):
+    """Whether there is a heap to see, not only a level surface."""
+    return any(np.ptp(height) > 1e-2 * height.max()
+               for _, _, height in profiles)
+
+
+def unit_of_reference(options, units, scale):
+    """In which unit a reference has its times (run_data.parse_scale)."""
+    if scale == 1:
+        return units.time
+    return "" if options.time_scale else r"$\sqrt{H_0/g}$"
+
+
 def plot_outlines(options, parameters, units, reference, scale):
-    outlines = [Outline(p, reference, scale) for p in choose(
+    profiles = run_data.without_repeat(
         [p for p in run_data.read_profiles(options.directory)
-         if len(p[1]) > 1], 6)]
-    if not outlines:
+         if len(p[1]) > 1])
+    if not has_shape(profiles):
         return None
+    outlines = [Outline(p, reference, scale) for p in choose(profiles, 6)]
     left = min(o.x[0] for o in outlines)
     width = 1.03 * (max(o.right() for o in outlines) - left)
     height = 1.08 * max(o.top() for o in outlines)
@@ -197,7 +183,8 @@ def plot_outlines(options, parameters, units, reference, scale):
     sheet = Sheet(len(outlines), columns, width / height, bars=False)
     name = reference.name if reference else ""
     for ax, outline in zip(sheet.axes, outlines):
-        outline.draw(ax, units, name)
+        outline.draw(ax, units, name,
+                     unit_of_reference(options, units, scale))
         ax.set_xlim(left, left + width)
         ax.set_ylim(0, height)
     sheet.name_axes(units)
@@ -225,7 +212,7 @@ def window_of(snapshot, margin=0.06):
 
 
 def raster_spacing(snapshot, window, most=1500):
-    """The finest leaf, or coarser if the raster would be too large."""
+    """The finest cell, or coarser if the raster would be too large."""
     spacing = float((snapshot.high - snapshot.low).min())
     while (window[1] - window[0]) / spacing > most:
         spacing *= 2
@@ -233,7 +220,7 @@ def raster_spacing(snapshot, window, most=1500):
 
 
 def snap_window(window, snapshot, spacing):
-    """The window moved outwards to edges of the raster of the leaves."""
+    """The window moved outwards to edges of the raster of the cells."""
     origin = snapshot.low.min(axis=0)
     out = []
     for k, d in enumerate((0, 0, 1, 1)):
@@ -275,20 +262,20 @@ def remove(contour):
             artist.remove()
 
 
-def draw_leaves(ax, snapshot, window, values, norm, cmap, lines):
-    """Every leaf of the window in its colour, with its edges."""
+def draw_cells(ax, snapshot, window, values, norm, cmap, lines):
+    """Every cell of the window in its colour, with its edges."""
     low, high = snapshot.low, snapshot.high
     keep = ((high[:, 0] > window[0]) & (low[:, 0] < window[1])
             & (high[:, 1] > window[2]) & (low[:, 1] < window[3]))
     low, high = low[keep], high[keep]
     squares = np.stack([low, np.c_[high[:, 0], low[:, 1]], high,
                         np.c_[low[:, 0], high[:, 1]]], axis=1)
-    leaves = PolyCollection(squares, array=values[keep], norm=norm, cmap=cmap)
-    leaves.set_edgecolor((0, 0, 0, 0.45) if lines else "face")
+    cells = PolyCollection(squares, array=values[keep], norm=norm, cmap=cmap)
+    cells.set_edgecolor((0, 0, 0, 0.45) if lines else "face")
     # thinner where there are many
     pixels = 1400 * (high - low).min() / (window[1] - window[0])
-    leaves.set_linewidth(min(0.35, 0.06 * pixels) if lines else 0.2)
-    ax.add_collection(leaves)
+    cells.set_linewidth(min(0.35, 0.06 * pixels) if lines else 0.2)
+    ax.add_collection(cells)
 
 
 def draw_grains(ax, snapshot, window, spacing, values, norm, cmap):
@@ -359,15 +346,14 @@ def plot_fields(options, parameters, units):
     panels = panels_of(snapshot, units)
     fraction = snapshot.fields.get(FRACTION, np.ones(len(snapshot.low)))
     aspect = (window[1] - window[0]) / (window[3] - window[2])
-    sheet = Sheet(1 + len(panels), 1 if aspect > 3.5 else 2, aspect, bars=True,
-                  lines=2)
-    draw_leaves(sheet.axes[0], snapshot, window, fraction, Normalize(0, 1),
+    columns = 1 if aspect > 3.5 else 2 if aspect > 0.5 else 1 + len(panels)
+    sheet = Sheet(1 + len(panels), columns, aspect, bars=True, lines=2)
+    draw_cells(sheet.axes[0], snapshot, window, fraction, Normalize(0, 1),
                 GRAINS, not options.no_grid)
     draw_contours(sheet.axes[0], snapshot, window, spacing, RED)
     draw_bar(sheet.bars[0], Normalize(0, 1), GRAINS)
-    sheet.axes[0].set_title("volume fraction of grains" if options.no_grid
-                            else "grains and grid",
-                            loc="left", pad=4)
+    sheet.axes[0].set_title("grains" + ("" if options.no_grid
+                                        else " and grid"), loc="left", pad=4)
     for ax, bar, (title, values, norm, cmap) in zip(
             sheet.axes[1:], sheet.bars[1:], panels):
         draw_grains(ax, snapshot, window, spacing, values, norm, cmap)
@@ -388,25 +374,51 @@ def plot_fields(options, parameters, units):
 # History
 
 
+def driven(parameters):
+    """Whether gravity does work for ever: along a direction that repeats."""
+    sides = {"2": ("left", "bottom"), "3": ("left", "front", "bottom")}
+    return any(g != 0 and parameters.get(f"boundary.{side}") == "periodic"
+               for g, side in zip(run_data.gravity_of(parameters),
+                                  sides.get(parameters.get("dimension"), ())))
+
+
+def name_of_rest(parameters, change):
+    """What the initial energy less all the known ones is."""
+    causes = ([" work of gravity,"] if driven(parameters) else []) + (
+        [" grains that left,"] if change < -1e-3 else [])
+    return (f"not accounted for:\n{''.join(causes).strip()} numerical" if causes
+            else "numerical")
+
+
+def words_on_volume(change):
+    if change < -1e-3:
+        return f"grains left in the box: {100 * (1 + change):.2g} %"
+    words = f"{abs(change):.1e}" if change else "none"
+    return f"relative change of the volume of grains: {words}"
+
+
 def plot_history(options, parameters, units):
     s = run_data.read_series(options.directory)
     if len(s["time"]) < 2:
         return None
     t = s["time"]
+    change = s["volume"] / (s["volume"][0] or 1.0) - 1
+    change = change[np.argmax(np.abs(change))]
     fig, axes = plt.subplots(2, 2, figsize=(9.6, 6.2), sharex=True,
                              layout="constrained")
     ax = axes[0, 0]
     ax.plot(t, s["front"], color=EARTH, label="front")
     ax.plot(t, s["height"], color=BLUE, label="height")
     ax.set_ylabel(label("length", units.length))
-    ax.set_ylim(bottom=min(0, 1.05 * np.min(s["front"])))
+    if s["front"].min() >= 0:
+        ax.set_ylim(bottom=0)
 
     ax = axes[0, 1]
     scale = abs(s["kinetic"][0] + s["potential"][0]) or 1.0
     for name, colour in (("potential", BLUE), ("kinetic", EARTH),
                          ("dissipated", RED), ("numerical", GREY)):
-        ax.plot(t, s[name] / scale, color=colour,
-                label=name if name != "numerical" else "not accounted for")
+        ax.plot(t, s[name] / scale, color=colour, label=name_of_rest(
+            parameters, change) if name == "numerical" else name)
     ax.set_ylabel("energy / initial energy")
 
     ax = axes[1, 0]
@@ -434,14 +446,8 @@ def plot_history(options, parameters, units):
         axes[1, 0].axvline(rest, color=GREY, lw=0.8)
     for ax in axes[1]:
         ax.set_xlabel(label("time", units.time))
-    volume = s["volume"]
-    change = np.max(np.abs(volume - volume[0])) / (abs(volume[0]) or 1.0)
-    note = (f"relative change of the volume of grains: {change:.1e}"
-            if 0 < change < 1e-3 else "the volume of the grains is unchanged"
-            if change == 0 else
-            f"grains at the end: {volume[-1] / volume[0]:.3g} of the first")
-    fig.suptitle(f"{title_of(parameters, options.directory)}\n{note}",
-                 fontsize=11)
+    fig.suptitle(f"{title_of(parameters, options.directory)}\n"
+                 + words_on_volume(change), fontsize=11)
     return save(fig, options, "history.png")
 
 
@@ -526,13 +532,18 @@ def parse_options():
     parser.add_argument("directory", metavar="DIR", type=pathlib.Path)
     parser.add_argument("-o", "--output", metavar="OUT", type=pathlib.Path,
                         help="where to write the pictures, default DIR")
-    parser.add_argument("--reference", metavar="FILE", type=pathlib.Path)
-    parser.add_argument("--time-scale", metavar="SCALE")
+    parser.add_argument("--reference", metavar="FILE", type=pathlib.Path,
+                        help="outlines to compare with")
+    parser.add_argument("--time-scale", metavar="SCALE",
+                        help="unit of time of the reference")
     parser.add_argument("--no-grid", action="store_true",
                         help="no lines of the grid in fields-final.png")
-    parser.add_argument("--no-film", action="store_true")
-    parser.add_argument("--fps", type=int, default=15)
-    parser.add_argument("--max-frames", type=int, default=150)
+    parser.add_argument("--no-film", action="store_true",
+                        help="pictures only")
+    parser.add_argument("--fps", type=int, default=15,
+                        help="frames a second of the film, default 15")
+    parser.add_argument("--max-frames", type=int, default=150,
+                        help="at most so many snapshots, default 150")
     options = parser.parse_args()
     options.output = options.output or options.directory
     return options

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Friction, and solid fraction where known, against the inertial number.
 
-  tools/plot_closure.py PICTURE "NAME [p=..] [key=value ..]" ...
+  tools/plot_closure.py "NAME [p=..] [key=value ..]" ... [-o PICTURE]
                         [--talus build/talus] [--linear]
                         [--dilatancy NU_0 A DELTA]
 
@@ -13,7 +13,7 @@ I^delta, dashed. What is drawn is written beside the picture, fig1.csv for
 fig1.png: a row for each point with the number of its curve. Figure 1 of
 lee_huang_chiew_2015 is
 
-  tools/plot_closure.py fig1.png --linear --dilatancy 0.6 0.28 0.58 \\
+  tools/plot_closure.py -o fig1.png --linear --dilatancy 0.6 0.28 0.58 \\
     "lee_huang p=1000 eta_S=0.38 d=5e-4 e_eff=0.46" \\
     "lee_huang p=1000 eta_S=0.38 d=5e-4 e_eff=0.58" \\
     "lee_huang p=1000 eta_S=0.38 d=5e-4 e_eff=0.70"
@@ -24,9 +24,7 @@ import pathlib
 import subprocess
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
+import run_data  # first: it says so if one of the next is missing
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -70,19 +68,38 @@ def write_data(path, curves, arguments):
 def shared_words(arguments):
     """Words that all curves have: no need to say them of each."""
     words = [argument.split() for argument in arguments]
-    return {w for w in words[0] if len(words) > 1 and all(w in x for x in words)}
+    return {w for w in words[0]
+            if len(words) > 1 and all(w in x for x in words)}
+
+
+def in_symbols(words):
+    """Words of a curve as a text with parameters as mathematics."""
+    parts = [word.partition("=") for word in words]
+    return ", ".join(f"{run_data.symbol(name)} = {value}" if equals
+                     else name for name, equals, value in parts)
+
+
+def parse_options():
+    here = pathlib.Path(__file__).resolve().parent.parent
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("curves", metavar="CURVE", nargs="+",
+                        help="a closure with its parameters, in quotes")
+    parser.add_argument("-o", "--output", metavar="PICTURE", type=pathlib.Path,
+                        default=pathlib.Path("closure.png"),
+                        help="default closure.png")
+    parser.add_argument("--talus", default=here / "build" / "talus",
+                        help="the program, default that of build/")
+    parser.add_argument("--linear", action="store_true",
+                        help="a linear axis of I instead of a logarithmic one")
+    parser.add_argument("--dilatancy", nargs=3, type=float,
+                        metavar=("NU_0", "A", "DELTA"),
+                        help="adds 1/nu = 1/nu_0 + a I^delta")
+    return parser.parse_args()
 
 
 def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("picture", metavar="PICTURE")
-    parser.add_argument("curves", metavar="CURVE", nargs="+")
-    parser.add_argument("--talus", default="build/talus")
-    parser.add_argument("--linear", action="store_true")
-    parser.add_argument("--dilatancy", nargs=3, type=float,
-                        metavar=("NU_0", "A", "DELTA"))
-    options = parser.parse_args()
+    options = parse_options()
 
     try:
         curves = [read_curve(options.talus, argument.split())
@@ -97,26 +114,32 @@ def main():
                                   figsize=(5 * len(names), 4))
     for axes, name in zip(panels[0], names):
         for k, (curve, argument) in enumerate(zip(curves, options.curves)):
-            label = " ".join(w for w in argument.split() if w not in shared)
-            draw(axes, curve, name, COLOURS[k % len(COLOURS)], label)
-        axes.set_xlabel("inertial number I")
+            label = in_symbols(w for w in argument.split() if w not in shared)
+            draw(axes, curve, name, COLOURS[k % len(COLOURS)],
+                 label or "default parameters")
+        axes.set_xlabel("inertial number $I$")
         axes.set_xscale("linear" if options.linear else "log")
-    panels[0][0].set_ylabel("friction τ/p")
+    panels[0][0].set_ylabel(r"friction $\tau/p$")
     if "nu" in names:
         axes = panels[0][1]
-        axes.set_ylabel("solid fraction")
+        axes.set_ylabel(r"solid fraction $\nu$")
         if options.dilatancy:
             nu_0, a, delta = options.dilatancy
             I = np.linspace(*axes.get_xlim(), 400).clip(1e-4)
             axes.plot(I, 1 / (1 / nu_0 + a * I**delta), "k--", linewidth=0.8,
                       label="dilatancy law")
-    panels[0][-1].legend(frameon=False)
-    figure.suptitle(" ".join(w for w in options.curves[0].split()
-                             if w in shared))
-    figure.tight_layout()
-    figure.savefig(options.picture, dpi=120)
-    write_data(pathlib.Path(options.picture).with_suffix(".csv"), curves,
-               options.curves)
+    handles, labels = panels[0][-1].get_legend_handles_labels()
+    lines = -(-len(labels) // len(names))  # below the panels
+    figure.set_figheight(4 + 0.22 * lines)
+    figure.legend(handles, labels, frameon=False, loc="lower center",
+                  ncol=len(names), fontsize=9)
+    figure.suptitle(in_symbols(w for w in options.curves[0].split()
+                               if w in shared), fontsize=11)
+    figure.tight_layout(rect=(0, 0.24 * lines / figure.get_figheight(), 1, 1))
+    table = options.output.with_suffix(".csv")
+    figure.savefig(options.output, dpi=120)
+    write_data(table, curves, options.curves)
+    print(options.output, table, sep="\n")
 
 
 if __name__ == "__main__":

@@ -11,23 +11,20 @@ has it, else 1). Of the field `state`, which the closure lee_huang gives, the
 colours are those of its states and the part of the grains in each is printed;
 of any other (nu, T, pE_over_p, shear_rate, ...) a scale. What is drawn is
 written beside the picture, state.csv for state.png: time, centre, edges and
-value of each leaf of grains.
+value of each cell of grains.
 """
 import argparse
 import csv
 import pathlib
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
+import run_data  # first: it says so if one of the next is missing
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
 from matplotlib.patches import Patch
 
 import plot
-import run_data
 
 STATES = ["solid", "quasi-static", "dense", "inertial", "beyond"]
 COLOURS = ListedColormap(["#b9b2a7", "#24639c", "#e3b04d", "#b5382b",
@@ -35,10 +32,15 @@ COLOURS = ListedColormap(["#b9b2a7", "#24639c", "#e3b04d", "#b5382b",
 
 
 def scale_of(text, parameters):
-    if text is None:
-        return run_data.number(parameters, "tau_c", 1.0)
+    """(scale, words for it) of the times."""
+    if text is None and "tau_c" in parameters:
+        text = "tau_c"
+    unit = run_data.Units(parameters).time
     value = run_data.number(parameters, text)
-    return float(text) if value is None else value
+    if value is not None:
+        return value, run_data.symbol(text)
+    value = float(text or 1)
+    return value, unit if value == 1 else rf"$\times$ {value:g} {unit}"
 
 
 def nearest(paths, times):
@@ -83,7 +85,8 @@ def colours_of(snapshots, field):
     return Normalize(values.min(), values.max()), "viridis"
 
 
-def make_figure(snapshots, scale, field):
+def make_figure(snapshots, times, units, field):
+    """A panel for each snapshot, with the words for its time."""
     windows = np.array([plot.window_of(s) for s in snapshots])
     window = [windows[:, 0].min(), windows[:, 1].max(), windows[:, 2].min(),
               windows[:, 3].max()]
@@ -93,26 +96,30 @@ def make_figure(snapshots, scale, field):
                              figsize=(7, 0.8 + rows * (0.3 + 6.2 / aspect)),
                              layout="constrained")
     norm, cmap = colours_of(snapshots, field)
-    for ax, snapshot in zip(axes[:, 0], snapshots):
+    for ax, snapshot, time in zip(axes[:, 0], snapshots, times):
         draw(ax, snapshot, window, field, norm, cmap)
         ax.set_xlim(window[:2])
         ax.set_ylim(window[2:])
-        ax.set_title(f"t = {snapshot.time / scale:.3g}", loc="left",
-                     fontsize=9)
+        ax.set_title(f"$t$ = {time}", loc="left", fontsize=9)
+        ax.set_ylabel(run_data.label("height", units.length))
+    axes[-1, 0].set_xlabel(run_data.label("$x$", units.length))
     if field == "state":
-        axes[-1, 0].set_xlabel(" \n")  # room for the legend
+        fig.get_layout_engine().set(rect=(0, 0.3 / fig.get_figheight(), 1,
+                                          1 - 0.3 / fig.get_figheight()))
         fig.legend(handles=[Patch(color=COLOURS(k), label=name)
                             for k, name in enumerate(STATES)],
                    loc="lower center", ncol=len(STATES), fontsize=8,
                    frameon=False)
     else:
         fig.colorbar(plt.cm.ScalarMappable(norm, cmap), ax=axes[:, 0].tolist(),
-                     label=snapshots[0].titles[field])
+                     label=run_data.label(snapshots[0].titles[field],
+                                          units.field(
+                                              snapshots[0].units[field])))
     return fig
 
 
 def write_data(path, snapshots, field):
-    """The leaves of grains in all panels, in the units of the run."""
+    """The cells of grains in all panels, in the units of the run."""
     with open(path, "w", newline="", encoding="utf-8") as f:
         writer = csv.writer(f)
         writer.writerow(["time", "x", "y", "width", "height", field])
@@ -124,20 +131,32 @@ def write_data(path, snapshots, field):
                 writer.writerow(f"{x:.6g}" for x in (s.time, *row))
 
 
-def main():
+def parse_options():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("directory", metavar="DIR", type=pathlib.Path)
-    parser.add_argument("times", metavar="TIME", type=float, nargs="*")
-    parser.add_argument("--scale")
-    parser.add_argument("--field", default="state")
-    parser.add_argument("-o", "--output", type=pathlib.Path)
-    options = parser.parse_args()
+    parser.add_argument("directory", metavar="DIR", type=pathlib.Path,
+                        help="a run with snapshots")
+    parser.add_argument("times", metavar="TIME", type=float, nargs="*",
+                        help="in units of SCALE, default the last")
+    parser.add_argument("--scale", help="number or parameter of the case")
+    parser.add_argument("--field", default="state",
+                        help="what to draw, default state")
+    parser.add_argument("-o", "--output", metavar="PICTURE", type=pathlib.Path,
+                        help="default DIR/FIELD.png")
+    return parser.parse_args()
+
+
+def main():
+    options = parse_options()
     paths = run_data.find_snapshots(options.directory)
     if not paths:
         sys.exit(f"plot_state: '{options.directory}' holds no snapshots")
-    scale = scale_of(options.scale,
-                     run_data.read_parameters(options.directory))
+    parameters = run_data.read_parameters(options.directory)
+    try:
+        scale, words = scale_of(options.scale, parameters)
+    except ValueError:
+        sys.exit(f"plot_state: '{options.scale}' is no number and no parameter "
+                 "of the case that is one")
     snapshots = [s.slice() for s in
                  nearest(paths, [t * scale for t in options.times])]
     if options.field not in snapshots[0].fields:
@@ -147,9 +166,12 @@ def main():
         for snapshot in snapshots:
             print_parts(snapshot, scale)
     path = options.output or options.directory / f"{options.field}.png"
-    make_figure(snapshots, scale, options.field).savefig(path, dpi=150)
+    make_figure(snapshots,
+                [f"{s.time / scale:.3g} {words}" for s in snapshots],
+                run_data.Units(parameters), options.field).savefig(path,
+                                                                   dpi=150)
     write_data(path.with_suffix(".csv"), snapshots, options.field)
-    print(path)
+    print(path, path.with_suffix(".csv"), sep="\n")
 
 
 if __name__ == "__main__":

@@ -4,8 +4,17 @@ import csv
 import math
 import pathlib
 import re
+import sys
 
-import numpy as np
+try:  # here for all tools, which import this file before any of these
+    import h5py
+    import matplotlib
+    import numpy as np
+except ImportError:
+    sys.exit(f"{pathlib.Path(sys.argv[0]).name}: needs numpy, h5py, matplotlib:"
+             " run it with a python3 that has them, such as /usr/bin/python3")
+
+matplotlib.use("Agg")
 
 FRACTION, VELOCITY = "fraction", "velocity"  # names of fields in snapshots
 
@@ -29,6 +38,59 @@ def number(parameters, name, default=None):
         return float(parameters[name])
     except (KeyError, ValueError):
         return default
+
+
+def gravity_of(parameters):
+    """Components of gravity; none if the run does not say."""
+    return [float(s) for s in parameters.get("gravity", "").split(",")
+            if s.strip()]
+
+
+class Units:
+    """Words for the axes: the units that the parameters `length_unit` and
+    `time_unit` name; without them L0 and sqrt(L0/g) where |gravity| = 1, else m
+    and s. Where |gravity| = 1 fields are in these, g and the density rho of the
+    grains."""
+
+    def __init__(self, parameters):
+        self.plain = abs(math.hypot(*gravity_of(parameters)) - 1) < 1e-12
+        length, time = ((r"$L_0$", r"$\sqrt{L_0/g}$") if self.plain
+                        else ("m", "s"))
+        self.length = parameters.get("length_unit", length)
+        self.time = parameters.get("time_unit", time)
+
+    def field(self, unit):
+        """The unit of a field that the file gives in `unit`, "" if none."""
+        if not self.plain:
+            return "" if unit == "1" else re.sub(r"\^(\d)", r"$^\1$", unit)
+        l = self.length.strip("$")
+        one = l if re.fullmatch(r"[A-Za-z](_\w)?", l) else f"({l})"
+        return {"m/s": rf"$\sqrt{{g\,{l}}}$", "1/s": rf"$\sqrt{{g/{one}}}$",
+                "m^2/s^2": rf"$g\,{l}$", "Pa": rf"$\rho g\,{l}$",
+                "Pa s": rf"$\rho\sqrt{{g\,{one}^3}}$"}.get(unit, "")
+
+
+def label(text, unit):
+    return f"{text} ({unit})" if unit else text
+
+
+GREEK = {"alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa",
+         "lambda", "mu", "nu", "rho", "sigma", "tau", "phi", "chi", "omega"}
+
+
+def symbol(name):
+    """A parameter's name as mathematics where it looks like it: mu_s, I0,
+    delta_mu; else as it is."""
+    if name.startswith("delta_"):
+        return rf"$\Delta\{name[6:]}$" if name[6:] in GREEK else name
+    match = re.fullmatch(r"([A-Za-z]+?)(?:_?([0-9]+)|_([A-Za-z]+))?", name)
+    if not match or (len(match[1]) > 1 and match[1] not in GREEK):
+        return name
+    head = "\\" + match[1] if match[1] in GREEK else match[1]
+    index = match[2] or match[3] or ""
+    if len(index) > 1:
+        index = rf"\mathrm{{{index}}}"
+    return f"${head}_{{{index}}}$" if index else f"${head}$"
 
 
 def read_table(path):
@@ -71,6 +133,15 @@ def read_profiles(directory):
         order = np.argsort(x)
         profiles.append((time, x[order], height[order]))
     return profiles
+
+
+def without_repeat(profiles, part=0.03):
+    """The profiles without a last one so soon after the one before it, by a
+    `part` of the time they span, that it shows the same."""
+    if len(profiles) < 3:
+        return profiles
+    first, before, last = (profiles[k][0] for k in (0, -2, -1))
+    return profiles[:-1] if last - before < part * (last - first) else profiles
 
 
 class Reference:
@@ -143,11 +214,9 @@ def compare(x, height, reference_x, reference_height):
 
 
 class Snapshot:
-    """One snapshot-*.h5: leaves and the fields on them."""
+    """One snapshot-*.h5: cells and the fields on them."""
 
     def __init__(self, path):
-        import h5py
-
         with h5py.File(path, "r") as f:
             vertices, cells = f["vertices"][:], f["cells"][:]
             self.time = float(f.attrs["time"])
@@ -163,7 +232,7 @@ class Snapshot:
         self.high = vertices[cells[:, 2 if self.dimension == 2 else 6]]
 
     def slice(self):
-        """In 3D the leaves cut by a plane of constant y, as a snapshot of 2D:
+        """In 3D the cells cut by a plane of constant y, as a snapshot of 2D:
         the plane through the heap's highest point next to its axis."""
         if self.dimension == 2:
             return self
@@ -202,7 +271,7 @@ class Snapshot:
         return box
 
     def sample(self, values, window, spacing):
-        """Values of the leaves on a raster of the window [x0, x1, z0, z1]:
+        """Values of the cells on a raster of the window [x0, x1, z0, z1]:
         (x, z, array [nz][nx]) at the centres of squares of edge `spacing`."""
         nx = max(1, int(round((window[1] - window[0]) / spacing)))
         nz = max(1, int(round((window[3] - window[2]) / spacing)))
@@ -211,7 +280,7 @@ class Snapshot:
         begin = np.rint((self.low - origin) / spacing).astype(int)
         end = np.rint((self.high - origin) / spacing).astype(int)
         seen = ((end > 0) & (begin < [nx, nz])).all(axis=1)
-        # a leaf smaller than the raster still colours its own square
+        # a cell smaller than the raster still colours its own square
         end = np.maximum(end, begin + 1)
         begin = np.maximum(begin, 0)
         for i in np.nonzero(seen)[0]:

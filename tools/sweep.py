@@ -8,13 +8,16 @@
 The first name is swept, further ones hold for all runs. DIR (default: case and
 name, as in sensitivity-mu_s) gets one directory per run and
   sweep.csv    front, height, run-out, arrest time of each; run-out = (front -
-               base)/base, base being that of the column (--base, default 1)
+               base)/base, base being that of the column (--base, default 1);
+               last_speed, that of the fastest grains in the last step, says
+               whether the heap was at rest by then
   sweep.png    run-out and height against the parameter, with a power law
                through the run-outs
   panels.png   the outlines of each run in a panel
-The table is printed too, and the exponent. The arrest time is the last at which
-the mean shear rate exceeds 1 % of its largest value; there is none if it still
-does at the end. A run that is there with the same parameters is not repeated.
+The table is printed too, the exponent, and what was written. The arrest time is
+the last at which the mean shear rate exceeds 1 % of its largest value; there is
+none if it still does at the end. A run that is there with the same parameters
+is not repeated.
 """
 import argparse
 import csv
@@ -22,13 +25,9 @@ import pathlib
 import subprocess
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
+import run_data  # first: it says so if one of the next is missing
 import matplotlib.pyplot as plt
 import numpy as np
-
-import run_data
 
 COLOUR, GREY = "#8a5a22", "#777777"
 
@@ -98,7 +97,12 @@ def write_table(path, name, runs):
         writer.writerows(run.row() for run in runs)
 
 
+def units_of(runs):
+    return run_data.Units(run_data.read_parameters(runs[0].directory))
+
+
 def plot_sweep(path, name, x, runs, fit):
+    units = units_of(runs)
     fig, axes = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
     for ax, what in zip(axes, ("runout", "height")):
         y = np.array([getattr(run, what) for run in runs])
@@ -106,52 +110,79 @@ def plot_sweep(path, name, x, runs, fit):
         if what == "runout" and fit:
             fine = np.geomspace(x.min(), x.max(), 50)
             ax.plot(fine, fit[1] * fine ** fit[0], color=GREY,
-                    label=f"{fit[1]:.3g} {name}$^{{{fit[0]:.2f}}}$")
+                    label=f"{fit[1]:.3g} {run_data.symbol(name)}"
+                    f"$^{{{fit[0]:.2f}}}$")
             ax.legend(frameon=False)
         if x.min() > 0 and x.max() > 5 * x.min():
             ax.set_xscale("log")
-        ax.set_xlabel(name)
-        ax.set_ylabel({"runout": "run-out / base", "height": "height"}[what])
+        ax.set_xlabel(run_data.symbol(name))
+        ax.set_ylabel("run-out / base" if what == "runout" else
+                      run_data.label("height", units.length))
     fig.savefig(path, dpi=150)
     plt.close(fig)
 
 
 def plot_panels(path, name, runs):
     """At most five times, evenly spread, in each panel."""
+    units = units_of(runs)
     fig, axes = plt.subplots(len(runs), 1, sharex=True, sharey=True,
                              squeeze=False, layout="constrained",
                              figsize=(7, 0.4 + 1.25 * len(runs)))
     right = 0
     for ax, run in zip(axes[:, 0], runs):
-        profiles = run_data.read_profiles(run.directory)
+        profiles = run_data.without_repeat(
+            run_data.read_profiles(run.directory))
         count = min(5, len(profiles))
         chosen = np.linspace(0, len(profiles) - 1, count).round().astype(int)
         for k, i in enumerate(chosen):
             time, x, height = profiles[i]
             shade = plt.get_cmap("copper_r")((k + 1) / (count + 1))
-            ax.plot(x, height, color=shade, lw=1.2, label=f"t = {time:.3g}")
+            ax.plot(x, height, color=shade, lw=1.2,
+                    label=f"$t$ = {time:.3g} {units.time}")
             right = max(right, x[np.nonzero(height)[0][-1]])
-        ax.set_title(f"{name} = {run.value}", loc="left", fontsize=9, pad=2)
+        ax.set_title(f"{run_data.symbol(name)} = {run.value}", loc="left",
+                     fontsize=9, pad=2)
         ax.spines[["top", "right"]].set_visible(False)
     axes[0, 0].set_xlim(0, 1.02 * right)
     axes[0, 0].set_ylim(bottom=0)
     axes[0, 0].legend(fontsize=7, frameon=False, loc="upper right", ncol=2)
-    axes[-1, 0].set_xlabel("x")
-    fig.supylabel("height", fontsize="medium")
+    axes[-1, 0].set_xlabel(run_data.label("$x$", units.length))
+    fig.supylabel(run_data.label("height", units.length), fontsize="medium")
     fig.savefig(path, dpi=150)
     plt.close(fig)
+
+
+def write_results(output, name, runs):
+    table = output / "sweep.csv"
+    write_table(table, name, runs)
+    print(table.read_text(encoding="utf-8"), end="")
+    x = numbers(runs)
+    fit = exponent(x, np.array([run.runout for run in runs]))
+    if fit:
+        print(f"run-out = {fit[1]:.4g} {name}^{fit[0]:.3f}")
+    print(table)
+    if x is not None:
+        plot_sweep(output / "sweep.png", name, x, runs, fit)
+        print(output / "sweep.png")
+    plot_panels(output / "panels.png", name, runs)
+    print(output / "panels.png")
 
 
 def parse_options():
     here = pathlib.Path(__file__).resolve().parent.parent
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("case", type=pathlib.Path)
-    parser.add_argument("words", nargs="+", metavar="name=value")
-    parser.add_argument("-o", "--output", type=pathlib.Path)
-    parser.add_argument("--base", type=float, default=1.0)
+    parser.add_argument("case", metavar="CASE.lua", type=pathlib.Path,
+                        help="the case to run")
+    parser.add_argument("words", nargs="+", metavar="name=value",
+                        help="first the values to run, then what all runs get")
+    parser.add_argument("-o", "--output", metavar="DIR", type=pathlib.Path,
+                        help="where to run and write, default CASE-name")
+    parser.add_argument("--base", metavar="LENGTH", type=float, default=1.0,
+                        help="of the column at the start, default 1")
     parser.add_argument("--talus", type=pathlib.Path,
-                        default=here / "build" / "talus")
+                        default=here / "build" / "talus",
+                        help="the program, default that of build/")
     return parser.parse_args()
 
 
@@ -169,15 +200,7 @@ def main():
             sys.exit(f"sweep: {name}={value} ended with status "
                      f"{error.returncode}")
         runs.append(Run(value, directory, options.base))
-    write_table(output / "sweep.csv", name, runs)
-    print((output / "sweep.csv").read_text(encoding="utf-8"), end="")
-    x = numbers(runs)
-    fit = exponent(x, np.array([run.runout for run in runs]))
-    if fit:
-        print(f"run-out = {fit[1]:.4g} {name}^{fit[0]:.3f}")
-    if x is not None:
-        plot_sweep(output / "sweep.png", name, x, runs, fit)
-    plot_panels(output / "panels.png", name, runs)
+    write_results(output, name, runs)
 
 
 if __name__ == "__main__":

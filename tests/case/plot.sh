@@ -22,7 +22,7 @@ timeout 120 "$build/talus2d" run "$root/examples/column.lua" level=7 stop=3 \
 timeout 120 mpirun --oversubscribe -n 2 "$build/talus3d" run \
   "$root/examples/box3d.lua" level=4 stop=0.5 -o box --quiet
 
-# Index and files agree; every leaf is there; the cells fill the box.
+# Index and files agree; every cell is there; the cells fill the box.
 cat > check.py << 'PYTHON'
 import sys
 import xml.etree.ElementTree as xml
@@ -65,13 +65,24 @@ for run in column box; do
     [ "$(wc -c < $run/$name)" -gt 5000 ] || { echo "$run/$name is small"; exit 1; }
   done
 done
+# A strip of a layer is too narrow for a title, and its surface is level.
+timeout 120 "$build/talus" run "$root/examples/bagnold.lua" stop=1 trees=4 \
+  -o layer --quiet
+timeout 120 "$build/talus" plot layer > output
+if grep -q outlines output; then
+  echo "a level surface was drawn as a heap"
+  exit 1
+fi
+"$python" -c '
+import matplotlib.image
+assert matplotlib.image.imread("layer/fields-final.png").shape[1] > 700'
 if "$build/talus" plot nowhere 2> output; then
   echo "a run that is not there was drawn"
   exit 1
 fi
 
 # Closures: a picture, and beside it the curves as they were printed.
-"$python" "$root/tools/plot_closure.py" curves.png mu_i "lee_huang p=1000" \
+"$python" "$root/tools/plot_closure.py" mu_i "lee_huang p=1000" -o curves.png \
   --talus "$build/talus"
 [ "$(wc -c < curves.png)" -gt 5000 ] || { echo "curves.png is small"; exit 1; }
 for curve in "0 mu_i" "1 lee_huang p=1000"; do
@@ -101,10 +112,31 @@ assert difference < 1e-12 and abs(scale - 0.5) < 1e-12
 a = ((x > 1) & (x < 5)).astype(float)
 b = ((x > 2) & (x < 6)).astype(float)
 assert abs(run_data.compare(x, a, x, b)[0] - 0.5) < 1e-3
+# what the axes say
+units = run_data.Units({"gravity": "0.6,-0.8", "length_unit": "$30\\,d$"})
+assert units.field("m/s") == r"$\sqrt{g\,30\,d}$", units.field("m/s")
+assert units.field("Pa s") == r"$\rho\sqrt{g\,(30\,d)^3}$"
+assert run_data.Units({"gravity": "0,-9.81"}).field("m/s") == "m/s"
+assert run_data.symbol("mu_s") == r"$\mu_{s}$"
+assert run_data.symbol("delta_mu") == r"$\Delta\mu$"
+assert run_data.symbol("I0") == "$I_{0}$"
+assert run_data.symbol("level") == "level"
+profiles = [(t, x, h) for t in (1, 5.7, 5.8)]
+assert len(run_data.without_repeat(profiles)) == 2
+assert len(run_data.without_repeat(profiles[:2])) == 2
 assert abs(run_data.parse_scale("sqrt(6.25)", {}) - 2.5) < 1e-12
 assert abs(run_data.parse_scale(None, {"a": "4"}) - 2) < 1e-12
 PYTHON
 "$python" compare.py "$root/tools"
+# Without its libraries (-S: none but Python's own) a tool says what it needs.
+for tool in plot plot_closure plot_state sweep compare_outline; do
+  if "$python" -S "$root/tools/$tool.py" 2> output ||
+      [ "$(wc -l < output)" -ne 1 ] || ! grep -q "needs numpy" output; then
+    echo "$tool without numpy:"
+    cat output
+    exit 1
+  fi
+done
 "$python" "$root/tools/compare_outline.py" column --reference \
   "$root/examples/reference/contact_dynamics_a6.26.csv" > output
 # level 7 is coarse; only far off if something is wrong
