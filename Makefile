@@ -113,7 +113,7 @@ check: setup ## all tests, in three minutes
 check-unit check-mesh check-case: check-%: ## one level of them
 	$(AGAIN) all tests
 	@tests/run.sh $(BUILD) $*
-convergence: ## proof of the numbers in 20 minutes; CASE=NAME, CASE=short
+convergence: ## proof of the numbers in five minutes; CASE=NAME, CASE=short
 	$(AGAIN) all $(PROOFS)
 	@tests/convergence/run.sh $(BUILD) $(CASE)
 bench: ## speed and memory, beside Gerris where it is installed; JOB=NAME
