@@ -9,6 +9,9 @@
 #include "talus/memory.h"
 #include "talus/minmax.h"
 
+/* Beyond this factor what is inside is a body's edge, not a gradient. */
+#define WALL_JUMP 100
+
 /* Conductance of a wall over that between two cells. */
 static double wall_factor(const struct bc *bc, double h) {
   switch (bc->type) {
@@ -34,20 +37,28 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
   }
 }
 
-/* Conductance to the walls, of leaves that have one, into wall[c] [slots]. */
-static void set_walls(struct hierarchy *h, const struct bc *const bc[],
+/* Walls of level l: conductance into wall[c] [slots]. Half a cell of the level
+ * above reaches from the wall to the opposite side of the node: it gets both in
+ * series where the wall conducts less, as it does below a heap that shears
+ * there. Else every level would be too soft, and correct too much. */
+static void set_walls(struct hierarchy *h, int l, const struct bc *const bc[],
                       double *const wall[]) {
-  const struct mesh *mesh = h->mesh;
-  for (int d = 0; d < DIM; d++) {
-    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const int patch = mesh->face_patch[f];
+  const struct level *level = &h->level[l];
+  const double size = ldexp(forest_layout(h->mesh->forest)->size, -l);
+  for (int32_t k = 0; k < h->nsides; k++) {
+    const int32_t s = h->sides[k].slot;
+    if (s < level->begin || s >= level->begin + level->nowned) continue;
+    for (int f = 0; f < NFACE; f++) {
+      const int patch = h->sides[k].patch[f];
       if (patch < 0) continue;
-      const int upper = mesh->face_leaf[f][0] >= 0;
-      const int32_t i = mesh->face_leaf[f][!upper], s = h->leaf_slot[i];
-      const double g = h->w[2 * d + upper][s];
+      double *w = &h->w[f][s];
+      const double inside = h->w[f ^ 1][s];
       for (int c = 0; c < h->nparts; c++) {
-        const int twice = h->nparts > 1 && c == d ? 2 : 1;
-        wall[c][s] += twice * g * wall_factor(&bc[c][patch], mesh->h[i]);
+        const int twice = h->nparts > 1 && c == f >> 1 ? 2 : 1;
+        wall[c][s] += twice * *w * wall_factor(&bc[c][patch], size);
+      }
+      if (inside > *w && inside < WALL_JUMP * *w) {
+        *w = 2 * *w * inside / (*w + inside);
       }
     }
   }
@@ -78,9 +89,8 @@ static void merge_sides(struct hierarchy *h, int l) {
   }
 }
 
-/* Masses add up, walls are in parallel like sides. */
-static void merge_cells(struct hierarchy *h, int l, double *mass,
-                        double *const wall[]) {
+/* Masses add up. */
+static void merge_cells(struct hierarchy *h, int l, double *mass) {
   const struct level *level = &h->level[l];
   const int32_t *parent = h->family_parent + level->family_begin;
   for (int32_t k = 0; k < level->nfamilies; k++) {
@@ -88,20 +98,11 @@ static void merge_cells(struct hierarchy *h, int l, double *mass,
     for (int c = 0; c < NCHILD; c++) sum += mass[family_slot(level, k, c)];
     mass[parent[k]] = sum;
   }
-  for (int c = 0; c < h->nparts; c++) {
-    for (int32_t k = 0; k < level->nfamilies; k++) {
-      double sum = 0;
-      for (int q = 0; q < NCHILD; q++) sum += wall[c][family_slot(level, k, q)];
-      wall[c][parent[k]] = 0.5 * sum;
-    }
-  }
 }
 
-static void add_ghosts(struct hierarchy *h, int l, double *mass,
-                       double *const wall[]) {
+static void add_ghosts(struct hierarchy *h, int l, double *mass) {
   plan_run(&h->level[l].add, NFACE, h->w, 1, true);
   plan_run(&h->level[l].add, 1, &mass, 1, true);
-  plan_run(&h->level[l].add, h->nparts, wall, 1, true);
 }
 
 /* Walls have no neighbour: they are in the diagonal. */
@@ -176,11 +177,11 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
   for (int f = 0; f < NFACE && h->nranks > 1; f++) memset(h->w[f], 0, size);
   if (h->nranks > 1) memset(mass, 0, size);
   set_leaves(h, alpha_f, factor, mass_density, mass);
-  set_walls(h, bc, wall);
   for (int l = h->nlevels - 1; l >= 0; l--) {
-    add_ghosts(h, l, mass, wall);
+    add_ghosts(h, l, mass);
+    set_walls(h, l, bc, wall);
     merge_sides(h, l);
-    merge_cells(h, l, mass, wall);
+    merge_cells(h, l, mass);
   }
   clear_sides(h);
   set_inverse(h, mass, wall);

@@ -257,6 +257,26 @@ START_TEST(contrast_of_viscosity) {
 }
 END_TEST
 
+static double soft_at_floor(const double *x) { return x[1] > 0 ? 1 : 0.2; }
+
+/* Coarse levels must not take the softness of the floor's faces for that of
+ * the cells on it: 13 iterations then in 2D, 10 in 3D. */
+START_TEST(soft_wall_costs_no_iterations) {
+  const int level = DIM == 2 ? 6 : 5;
+  struct flow *s = flow_new(grid_new(MPI_COMM_WORLD, 1, false, level, level),
+                            soft_at_floor, BC_DIRICHLET);
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    s->rhs[1][i] = sin(7 * s->mesh->x[i][0]) * cos(5 * s->mesh->x[i][1]);
+  }
+  const struct solve_stats stats =
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1e4, s->rhs, s->bc,
+                    1e-8, MOST, s->u);
+  ck_assert_int_eq(stats.status, SOLVE_CONVERGED);
+  ck_assert_int_le(stats.iterations, 8);
+  flow_destroy(s);
+}
+END_TEST
+
 START_TEST(solution_does_not_depend_on_ranks) {
   double sum[2];
   int iterations[2];
@@ -324,6 +344,7 @@ Suite *viscous_suite(void) {
   tcase_add_loop_test(t, dissipation_is_the_work_of_the_force, 0, 2);
   tcase_add_loop_test(t, manufactured_solution_is_second_order, 0, 2);
   tcase_add_loop_test(t, contrast_of_viscosity, 0, 10);
+  tcase_add_test(t, soft_wall_costs_no_iterations);
   tcase_add_loop_test(t, solution_does_not_depend_on_ranks, 0, 4);
   tcase_add_test(t, robin_walls_slip);
   suite_add_tcase(suite, t);
