@@ -32,7 +32,8 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
     const double ratio = factor * mesh->volume[i] / (mesh->h[i] * mesh->h[i]);
-    for (int f = 0; f < NFACE; f++) h->w[f][s] = ratio * alpha_f[face[f]];
+    for (int f = 0; f < NFACE; f++)
+      h->w[f][s] = (float)(ratio * alpha_f[face[f]]);
     mass[s] = mass_density ? mass_density[i] * mesh->volume[i] : 0;
   }
 }
@@ -51,14 +52,13 @@ static void set_walls(struct hierarchy *h, int l, const struct bc *const bc[],
     for (int f = 0; f < NFACE; f++) {
       const int patch = h->sides[k].patch[f];
       if (patch < 0) continue;
-      double *w = &h->w[f][s];
-      const double inside = h->w[f ^ 1][s];
+      const double w = (double)h->w[f][s], inside = (double)h->w[f ^ 1][s];
       for (int c = 0; c < h->nparts; c++) {
         const int twice = h->nparts > 1 && c == f >> 1 ? 2 : 1;
-        wall[c][s] += twice * *w * wall_factor(&bc[c][patch], size);
+        wall[c][s] += twice * w * wall_factor(&bc[c][patch], size);
       }
-      if (inside > *w && inside < WALL_JUMP * *w) {
-        *w = 2 * *w * inside / (*w + inside);
+      if (inside > w && inside < WALL_JUMP * w) {
+        h->w[f][s] = (float)(2 * w * inside / (w + inside));
       }
     }
   }
@@ -73,17 +73,17 @@ static void merge_sides(struct hierarchy *h, int l) {
   const int32_t *parent = h->family_parent + level->family_begin;
   for (int f = 0; f < NFACE; f++) {
     const int d = f >> 1;
-    const double *w = h->w[f], *within = h->w[2 * d + 1];
+    const float *w = h->w[f], *within = h->w[2 * d + 1];
     float *limit = h->limit[f] + level->family_begin;
     for (int32_t k = 0; k < n; k++) {
       double in = 0, out = 0;
 #pragma GCC unroll 8
       for (int c = 0; c < NCHILD; c++) {
         const int32_t i = family_slot(level, k, c);
-        if ((c >> d & 1) == (f & 1)) out += 0.5 * w[i];
-        if ((c >> d & 1) == 0) in += 0.5 * within[i];
+        if ((c >> d & 1) == (f & 1)) out += 0.5 * (double)w[i];
+        if ((c >> d & 1) == 0) in += 0.5 * (double)within[i];
       }
-      h->w[f][parent[k]] = out;
+      h->w[f][parent[k]] = (float)out;
       limit[k] = (float)(out / max2(max2(in, out), DBL_MIN));
     }
   }
@@ -101,7 +101,7 @@ static void merge_cells(struct hierarchy *h, int l, double *mass) {
 }
 
 static void add_ghosts(struct hierarchy *h, int l, double *mass) {
-  plan_run(&h->level[l].add, NFACE, h->w, 1, true);
+  plan_run_float(&h->level[l].add, NFACE, h->w, true);
   plan_run(&h->level[l].add, 1, &mass, 1, true);
 }
 
@@ -124,15 +124,15 @@ static void clear_sides(struct hierarchy *h) {
 static void set_inverse(struct hierarchy *h, double *restrict mass,
                         double *const wall[]) {
   for (int f = 0; f < NFACE; f++) {
-    for (int32_t i = 0; i < h->nowned; i++) mass[i] += h->w[f][i];
+    for (int32_t i = 0; i < h->nowned; i++) mass[i] += (double)h->w[f][i];
   }
   for (int c = 0; c < h->nparts; c++) {
     const double twice = h->nparts > 1 ? 1 : 0; /* the normal stress */
-    const double *lower = h->w[2 * c], *upper = h->w[2 * c + 1];
+    const float *lower = h->w[2 * c], *upper = h->w[2 * c + 1];
     double *restrict inverse = h->inverse[c];
     for (int32_t i = 0; i < h->nowned; i++) {
       const double diagonal =
-          mass[i] + wall[c][i] + twice * (lower[i] + upper[i]);
+          mass[i] + wall[c][i] + twice * ((double)lower[i] + (double)upper[i]);
       const double a = 1 / max2(diagonal, DBL_MIN);
       inverse[i] = diagonal > 0 ? a : 0;
     }
@@ -174,7 +174,9 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
   h->ncycles = h->rough_sweeps = 0;
   for (int c = 0; c < nparts; c++) memset(wall[c], 0, size);
   /* what other ranks have merged is added */
-  for (int f = 0; f < NFACE && h->nranks > 1; f++) memset(h->w[f], 0, size);
+  for (int f = 0; f < NFACE && h->nranks > 1; f++) {
+    memset(h->w[f], 0, (size_t)h->nslots * sizeof *h->w[f]);
+  }
   if (h->nranks > 1) memset(mass, 0, size);
   set_leaves(h, alpha_f, factor, mass_density, mass);
   for (int l = h->nlevels - 1; l >= 0; l--) {

@@ -75,7 +75,7 @@ KERNEL double transposed(const struct hierarchy *h, struct run run, int32_t i,
                          v[diagonal(h, run, i, c, 0, d, 1)];
     const double lower = centre + v[diagonal(h, run, i, c, 1, d, 0)] -
                          v[diagonal(h, run, i, c, 0, d, 0)];
-    sum += h->w[2 * d + 1][i] * upper - h->w[2 * d][i] * lower;
+    sum += (double)h->w[2 * d + 1][i] * upper - (double)h->w[2 * d][i] * lower;
   }
   return 0.25 * sum;
 }
@@ -86,7 +86,7 @@ KERNEL double pull(const struct hierarchy *h, struct run run, int32_t i, int c,
   double sum = h->r[c][i];
 #pragma GCC unroll 6
   for (int f = 0; f < NFACE; f++) {
-    const double w = h->w[f][i] * h->e[c][across(h, run, i, f)];
+    const double w = (double)h->w[f][i] * h->e[c][across(h, run, i, f)];
     sum += nparts > 1 && f >> 1 == c ? 2 * w : w;
   }
   return nparts > 1 ? sum + transposed(h, run, i, c) : sum;
@@ -162,7 +162,7 @@ KERNEL void restrict_jumps(struct hierarchy *h, const struct level *level,
     const struct jump *jump = &h->jump[k];
     const int32_t i = jump->fine, beyond = h->neighbour[jump->face][i];
     const int d = jump->face >> 1, upper = jump->face & 1;
-    const double w = h->w[jump->face][i];
+    const double w = (double)h->w[jump->face][i];
     for (int c = 0; c < nparts; c++) {
       const int twice = nparts > 1 && c == d ? 2 : 1;
       double flux = twice * w * (h->e[c][i] - h->e[c][beyond]);

@@ -203,13 +203,13 @@ static void find_patches(struct hierarchy *h) {
     for (int f = 0; f < NFACE; f++) {
       const int32_t face = mesh->cell_face[i][f];
       if (face < mesh->nfaces) {
-        h->w[f][h->leaf_slot[i]] = mesh->face_patch[face] + 1;
+        h->w[f][h->leaf_slot[i]] = (float)(mesh->face_patch[face] + 1);
       }
     }
   }
   for (int l = h->nlevels - 1; l >= 0; l--) {
     const struct level *level = &h->level[l];
-    plan_run(&h->level[l].add, NFACE, h->w, 1, true);
+    plan_run_float(&h->level[l].add, NFACE, h->w, true);
     for (int32_t k = 0; k < level->nfamilies; k++) {
       const int32_t parent = h->family_parent[level->family_begin + k];
       for (int c = 0; c < NCHILD; c++) {
@@ -221,7 +221,7 @@ static void find_patches(struct hierarchy *h) {
     }
   }
   for (int l = 0; l < h->nlevels; l++) {
-    plan_run(&h->level[l].copy, NFACE, h->w, 1, false);
+    plan_run_float(&h->level[l].copy, NFACE, h->w, false);
   }
   int32_t n = 0;
   for (int32_t i = 0; i < h->nactive; i++) h->nsides += h->wall[i] != 0;
@@ -240,7 +240,7 @@ static void allocate_sides(struct hierarchy *h) {
   const struct level *last = &h->level[h->nlevels - 1];
   const size_t nfamilies = (size_t)(last->family_begin + last->nfamilies);
   for (int f = 0; f < NFACE; f++) {
-    h->w[f] = MEM_NEW(double, h->nslots);
+    h->w[f] = MEM_NEW(float, h->nslots);
     h->limit[f] = MEM_NEW(float, nfamilies);
   }
 }
@@ -353,14 +353,15 @@ void hierarchy_destroy(struct hierarchy *h) {
 int64_t hierarchy_bytes(const struct hierarchy *h) {
   const struct level *last = &h->level[h->nlevels - 1];
   const int64_t nfamilies = last->family_begin + last->nfamilies;
-  const int64_t number = sizeof(double), index = sizeof(int32_t);
+  const int64_t number = sizeof(double), half = sizeof(float);
+  const int64_t index = sizeof(int32_t);
 
   return h->nactive * ((NFACE + NCORNER) * index + 1) +
-         h->nslots * (NFACE + DIM) * number + arena_length(h) * number +
-         nfamilies * (NFACE * (int64_t)sizeof(float) + index) +
+         h->nslots * (NFACE * half + DIM * number) + arena_length(h) * number +
+         nfamilies * (NFACE * half + index) +
          h->njumps * (int64_t)sizeof(struct jump) +
          h->nmirrors * (int64_t)sizeof(struct mirror) +
          h->nsides * (int64_t)sizeof(struct side) +
-         h->nleaves * (index + DIM * (number + (int64_t)sizeof(float))) +
+         h->nleaves * (index + DIM * (number + half)) +
          krylov_space_bytes(h->krylov);
 }

@@ -19,7 +19,7 @@ enum { ROUGH_LAYERS = 10, ROUGH_SWEEPS = 20 };
 static bool is_rough(const struct hierarchy *h, int32_t i) {
   double least = HUGE_VAL, most = 0;
   for (int f = 0; f < NFACE; f++) {
-    const double w = h->w[f][i];
+    const double w = (double)h->w[f][i];
     if (w > 0) least = min2(least, w);
     most = max2(most, w);
   }

@@ -92,18 +92,22 @@ static void unpack(const struct plan *plan, int n, double *const v[], int block,
   }
 }
 
-void plan_run(struct plan *plan, int n, double *const v[], int block,
-              bool add) {
-  if (plan->nranks == 1) return;
-  const int64_t each = (int64_t)n * block;
-  const int64_t nsend = plan->send_begin[plan->nranks] * each;
-  const int64_t nrecv = plan->recv_begin[plan->nranks] * each;
-  if (nsend + nrecv > plan->capacity) {
-    plan->capacity = nsend + nrecv;
-    plan->buffer =
-        mem_resize(plan->buffer, (size_t)plan->capacity, sizeof(double));
-  }
-  double *out = plan->buffer, *in = plan->buffer + nsend;
+/* Room in the buffer for `each` numbers per index: what is sent first. */
+static void reserve(struct plan *plan, int64_t each) {
+  const int64_t n =
+      (plan->send_begin[plan->nranks] + plan->recv_begin[plan->nranks]) * each;
+  if (n <= plan->capacity) return;
+  plan->capacity = n;
+  plan->buffer = mem_resize(plan->buffer, (size_t)n, sizeof(double));
+}
+
+/* Where in the buffer what arrives begins. */
+static double *arrivals(const struct plan *plan, int64_t each) {
+  return plan->buffer + plan->send_begin[plan->nranks] * each;
+}
+
+static void exchange(struct plan *plan, int64_t each) {
+  double *out = plan->buffer, *in = arrivals(plan, each);
   int nrequests = 0;
   for (int r = 0; r < plan->nranks; r++) {
     int64_t begin = plan->recv_begin[r] * each;
@@ -113,7 +117,6 @@ void plan_run(struct plan *plan, int n, double *const v[], int block,
                           TAG_PLAN, plan->comm, &plan->request[nrequests++]));
     }
   }
-  pack(plan, n, v, block, out);
   for (int r = 0; r < plan->nranks; r++) {
     int64_t begin = plan->send_begin[r] * each;
     int64_t end = plan->send_begin[r + 1] * each;
@@ -123,5 +126,38 @@ void plan_run(struct plan *plan, int n, double *const v[], int block,
     }
   }
   MPI_CHECK(MPI_Waitall(nrequests, plan->request, MPI_STATUSES_IGNORE));
-  unpack(plan, n, v, block, add, in);
+}
+
+void plan_run(struct plan *plan, int n, double *const v[], int block,
+              bool add) {
+  if (plan->nranks == 1) return;
+  const int64_t each = (int64_t)n * block;
+  reserve(plan, each);
+  pack(plan, n, v, block, plan->buffer);
+  exchange(plan, each);
+  unpack(plan, n, v, block, add, arrivals(plan, each));
+}
+
+void plan_run_float(struct plan *plan, int n, float *const v[], bool add) {
+  if (plan->nranks == 1) return;
+  reserve(plan, n);
+  double *out = plan->buffer;
+  for (int r = 0; r < plan->nranks; r++) {
+    for (int k = 0; k < n; k++) {
+      for (int32_t i = plan->send_begin[r]; i < plan->send_begin[r + 1]; i++) {
+        *out++ = (double)v[k][plan->send_index[i]];
+      }
+    }
+  }
+  exchange(plan, n);
+  const double *in = arrivals(plan, n);
+  for (int r = 0; r < plan->nranks; r++) {
+    for (int k = 0; k < n; k++) {
+      for (int32_t i = plan->recv_begin[r]; i < plan->recv_begin[r + 1]; i++) {
+        float *to = &v[k][plan->recv_index[i]];
+        *to = (float)(add ? (double)*to + *in : *in);
+        in++;
+      }
+    }
+  }
 }

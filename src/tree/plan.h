@@ -38,5 +38,7 @@ struct plan_request *plan_ask(struct plan *plan, int64_t n,
 /* Send v[k][send_index] and put (or add) what arrives into v[k][recv_index];
  * each index stands for `block` consecutive entries. Collective. */
 void plan_run(struct plan *plan, int n, double *const v[], int block, bool add);
+/* The same in single precision, block = 1. */
+void plan_run_float(struct plan *plan, int n, float *const v[], bool add);
 
 #endif
