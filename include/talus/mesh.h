@@ -78,7 +78,6 @@ struct mesh {
   int32_t begin_average, begin_virtual, begin_boundary;
   double (*x)[DIM]; /* [nleaves + nghosts] centres, m */
   double *h;        /* [nleaves + nghosts] edge, m */
-  double *volume;   /* [nleaves + nghosts] h^DIM */
   int8_t *level;    /* [nleaves + nghosts] */
   uint64_t *key;    /* [nleaves + nghosts] curve position of first corner */
   int32_t (*stencil)[NSTENCIL]; /* [nleaves] */
@@ -113,6 +112,12 @@ struct mesh {
   const uint64_t *first_keys; /* [nranks + 1] first key of every rank's share
                                  of the curve; borrowed from the forest */
 };
+
+/* Volume of leaf or ghost i, m^3 (in 2D m^2). */
+static inline double mesh_volume(const struct mesh *mesh, int32_t i) {
+  const double h = mesh->h[i];
+  return DIM == 2 ? h * h : h * h * h;
+}
 
 /* Flatten the forest. Collective; the forest must outlive the mesh. */
 struct mesh *mesh_new(struct forest *forest);

@@ -194,13 +194,13 @@ static double net_outflow(const struct mesh *mesh, const double *u_f,
   for (int d = 0; d < DIM; d++) {
     net += u_f[mesh->cell_face[i][2 * d + 1]] - u_f[mesh->cell_face[i][2 * d]];
   }
-  return net * (mesh->volume[i] / mesh->h[i]);
+  return net * (mesh_volume(mesh, i) / mesh->h[i]);
 }
 
 double clean_divergence(const struct mesh *mesh, const double *u_f) {
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    most = max2(most, fabs(net_outflow(mesh, u_f, i)) / mesh->volume[i]);
+    most = max2(most, fabs(net_outflow(mesh, u_f, i)) / mesh_volume(mesh, i));
   }
   return mesh_max(mesh, most);
 }
@@ -313,7 +313,7 @@ static void tell_node(struct clean *clean, const struct mesh *mesh,
     memcpy(clean->change[node - mesh->nleaves], change, sizeof *clean->change);
     return;
   }
-  const double area = mesh->volume[node] / mesh->h[node];
+  const double area = mesh_volume(mesh, node) / mesh->h[node];
   for (int f = 0; f < NFACE; f++) {
     if (clean->owned[node] >> f & 1) {
       u_f[mesh->cell_face[node][f]] += change[f] / area;

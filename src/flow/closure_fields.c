@@ -57,7 +57,7 @@ double closure_fields_shear_rate(const struct simulation *sim) {
   double sum[2] = {0}, *rate = MEM_NEW(double, mesh->nleaves);
   set_shear_rate(sim, rate);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double grains = sim->c->v[i] * mesh->volume[i];
+    const double grains = sim->c->v[i] * mesh_volume(mesh, i);
     sum[0] += grains * rate[i];
     sum[1] += grains;
   }

@@ -77,7 +77,7 @@ static void measure_sums(const struct simulation *sim, const double *c,
   double fastest = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     if (c[i] == 0) continue;
-    double u2 = 0, v = c[i] * mesh->volume[i];
+    double u2 = 0, v = c[i] * mesh_volume(mesh, i);
     for (int d = 0; d < DIM; d++) u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
     sum_add(&volume, v);
     sum_add(&kinetic, 0.5 * rho * u2 * v);

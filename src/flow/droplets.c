@@ -76,7 +76,7 @@ static int number_pieces(const struct mesh *mesh, const double *c,
       last = parent[i];
       volume = (*pieces)[last].volume;
     }
-    volume += c[i] * mesh->volume[i];
+    volume += c[i] * mesh_volume(mesh, i);
   }
   if (last >= 0) (*pieces)[last].volume = volume;
   return n;

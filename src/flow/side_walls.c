@@ -28,7 +28,7 @@ double side_walls_power(const struct mesh *mesh, const double *drag,
   double sum = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
-      sum += drag[i] * u[d][i] * u[d][i] * mesh->volume[i];
+      sum += drag[i] * u[d][i] * u[d][i] * mesh_volume(mesh, i);
     }
   }
   return mesh_sum(mesh, sum);

@@ -212,7 +212,7 @@ static void log_divergence(struct simulation *sim, double dt) {
     for (int f = 0; f < NFACE; f++) {
       net += (f & 1 ? 1 : -1) * sim->u_f->v[mesh->cell_face[i][f]];
     }
-    sum += sim->frozen->v[i] * net * dt * mesh->volume[i] / mesh->h[i];
+    sum += sim->frozen->v[i] * net * dt * mesh_volume(mesh, i) / mesh->h[i];
   }
   sim->divergence_volume += mesh_sum(mesh, sum);
 }
@@ -279,7 +279,7 @@ static void add_dissipation(struct simulation *sim, double dt) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double mean = 0;
     for (int f = 0; f < NFACE; f++) mean += heat[mesh->cell_face[i][f]] / NFACE;
-    sum += sim->c->v[i] * mean * mesh->volume[i];
+    sum += sim->c->v[i] * mean * mesh_volume(mesh, i);
   }
   sim->energy.dissipated += dt * mesh_sum(mesh, sum);
 }
@@ -510,8 +510,8 @@ static void anchor_pressure(struct simulation *sim) {
   double sum[2] = {0};
   if (sim->pressure_set) return;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    sum[0] += sim->p->v[i] * mesh->volume[i];
-    sum[1] += mesh->volume[i];
+    sum[0] += sim->p->v[i] * mesh_volume(mesh, i);
+    sum[1] += mesh_volume(mesh, i);
   }
   const double mean = mesh_sum(mesh, sum[0]) / mesh_sum(mesh, sum[1]);
   const double shift = sim->params->pressure_level - mean;

@@ -31,10 +31,11 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
-    const double ratio = factor * mesh->volume[i] / (mesh->h[i] * mesh->h[i]);
+    const double ratio =
+        factor * mesh_volume(mesh, i) / (mesh->h[i] * mesh->h[i]);
     for (int f = 0; f < NFACE; f++)
       h->w[f][s] = (float)(ratio * alpha_f[face[f]]);
-    mass[s] = mass_density ? mass_density[i] * mesh->volume[i] : 0;
+    mass[s] = mass_density ? mass_density[i] * mesh_volume(mesh, i) : 0;
   }
 }
 
@@ -160,7 +161,8 @@ static void set_weights(struct hierarchy *h) {
   for (int c = 0; c < h->nparts; c++) {
     float *weight = h->weight + (int64_t)c * mesh->nleaves;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      weight[i] = (float)(h->inverse[c][h->leaf_slot[i]] * mesh->volume[i]);
+      weight[i] =
+          (float)(h->inverse[c][h->leaf_slot[i]] * mesh_volume(mesh, i));
     }
   }
 }

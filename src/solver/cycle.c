@@ -327,7 +327,7 @@ KERNEL void run(struct hierarchy *h, double sign, const double *r, double *e,
     memset(h->r[c], 0, size);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       h->r[c][h->leaf_slot[i]] =
-          sign * mesh->volume[i] * r[(int64_t)c * mesh->nleaves + i];
+          sign * mesh_volume(mesh, i) * r[(int64_t)c * mesh->nleaves + i];
     }
   }
   cycle(h, nparts);

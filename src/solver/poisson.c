@@ -76,10 +76,10 @@ static void means(const struct context *k, const double *rhs, const double *p,
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double size = 0;
     for (int f = 0; f < NFACE; f++) size += fabs(flux[mesh->cell_face[i][f]]);
-    sum[0] += mesh->volume[i] * p[i];
-    sum[1] += mesh->volume[i] * r[i];
-    sum[2] += mesh->volume[i] * (fabs(rhs[i]) + size / mesh->h[i]);
-    sum[3] += mesh->volume[i];
+    sum[0] += mesh_volume(mesh, i) * p[i];
+    sum[1] += mesh_volume(mesh, i) * r[i];
+    sum[2] += mesh_volume(mesh, i) * (fabs(rhs[i]) + size / mesh->h[i]);
+    sum[3] += mesh_volume(mesh, i);
   }
   MPI_CHECK(
       MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPI_DOUBLE, MPI_SUM, mesh->comm));

@@ -77,7 +77,6 @@ void mesh_destroy(struct mesh *mesh) {
   void *owned[] = {mesh->exchange,
                    mesh->x,
                    mesh->h,
-                   mesh->volume,
                    mesh->level,
                    mesh->key,
                    mesh->stencil,

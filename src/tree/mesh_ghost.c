@@ -147,16 +147,13 @@ static void set_geometry(struct builder *b) {
   const double unit = b->layout->size / (double)curve_edge(0);
   mesh->x = mem_alloc((size_t)n, sizeof *mesh->x);
   mesh->h = MEM_NEW(double, n);
-  mesh->volume = MEM_NEW(double, n);
   table_begin(&b->table, (int64_t)n + n / 4); /* leaves and helper nodes */
   for (int32_t i = 0; i < n; i++) {
     int64_t x[DIM];
     const double edge = (double)curve_edge(mesh->level[i]);
     curve_coordinates(b->curve, mesh->key[i], x);
     mesh->h[i] = unit * edge;
-    mesh->volume[i] = 1;
     for (int d = 0; d < DIM; d++) {
-      mesh->volume[i] *= mesh->h[i];
       mesh->x[i][d] = b->layout->origin[d] + unit * ((double)x[d] + 0.5 * edge);
     }
     table_insert(&b->table, mesh->key[i], TAG_LEAF, i);

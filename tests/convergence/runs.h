@@ -86,9 +86,9 @@ static inline struct norms norms_of(const struct mesh *mesh,
                                     const double *error) {
   double volume = 0, sum[2] = {0}, most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    volume += mesh->volume[i];
-    sum[0] += mesh->volume[i] * error[i] * error[i];
-    sum[1] += mesh->volume[i] * fabs(error[i]);
+    volume += mesh_volume(mesh, i);
+    sum[0] += mesh_volume(mesh, i) * error[i] * error[i];
+    sum[1] += mesh_volume(mesh, i) * fabs(error[i]);
     if (!(fabs(error[i]) <= most)) most = fabs(error[i]); /* NaN stays */
   }
   volume = mesh_sum(mesh, volume);

@@ -97,7 +97,7 @@ static inline double exponential(const void *smooth, const double *x) {
 /* Take the mean over the box off v [nleaves]. */
 static inline void remove_mean(const struct mesh *mesh, double *v) {
   double volume = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) volume += mesh->volume[i];
+  for (int32_t i = 0; i < mesh->nleaves; i++) volume += mesh_volume(mesh, i);
   const double mean = integral(mesh, v) / mesh_sum(mesh, volume);
   for (int32_t i = 0; i < mesh->nleaves; i++) v[i] -= mean;
 }

@@ -50,7 +50,7 @@ static void follow(const struct simulation *sim, struct track *track) {
     for (int d = 0; d < 2; d++) {
       const double from =
           remainder(sim->mesh->x[i][d] - track->centre[d], kBox);
-      shift[d] += sim->c->v[i] * sim->mesh->volume[i] * from / volume;
+      shift[d] += sim->c->v[i] * mesh_volume(sim->mesh, i) * from / volume;
     }
   }
   for (int d = 0; d < 2; d++) track->centre[d] += shift[d];
@@ -61,7 +61,7 @@ static void follow(const struct simulation *sim, struct track *track) {
 static double mean_speed(const struct simulation *sim) {
   double sum = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    sum += sim->c->v[i] * sim->mesh->volume[i] * sim->u[0]->v[i];
+    sum += sim->c->v[i] * mesh_volume(sim->mesh, i) * sim->u[0]->v[i];
   }
   return sum / integral(sim->mesh, sim->c->v);
 }

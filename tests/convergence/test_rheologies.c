@@ -271,7 +271,7 @@ static double faster_part(const struct simulation *sim, double speed) {
   const struct mesh *mesh = sim->mesh;
   double sum[2] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double grains = sim->c->v[i] * mesh->volume[i];
+    const double grains = sim->c->v[i] * mesh_volume(mesh, i);
     const double u = hypot(sim->u[0]->v[i], sim->u[1]->v[i]);
     sum[0] += u > speed && sim->c->v[i] > 0.5 ? grains : 0;
     sum[1] += grains;

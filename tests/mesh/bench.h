@@ -150,7 +150,7 @@ static inline double courant_dt(const struct mesh *mesh, const double *u_f,
 static inline double integral(const struct mesh *mesh, const double *v) {
   long double sum = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    sum += (long double)v[i] * mesh->volume[i];
+    sum += (long double)v[i] * mesh_volume(mesh, i);
   }
   return mesh_sum(mesh, (double)sum);
 }

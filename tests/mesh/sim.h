@@ -139,8 +139,8 @@ static inline double sim_momentum(const struct simulation *sim, int d) {
   long double sum = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     const double rho = gas + sim->c->v[i] * (grains - gas);
-    sum +=
-        (long double)rho * sim->mesh->volume[i] * (d < 0 ? 1 : sim->u[d]->v[i]);
+    sum += (long double)rho * mesh_volume(sim->mesh, i) *
+           (d < 0 ? 1 : sim->u[d]->v[i]);
   }
   return mesh_sum(sim->mesh, (double)sum);
 }

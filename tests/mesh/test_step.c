@@ -185,7 +185,7 @@ static void numbers(const struct simulation *sim, double out[NNUMBERS]) {
   const struct mesh *mesh = sim->mesh;
   double sum[NNUMBERS] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double v = mesh->volume[i], c = sim->c->v[i];
+    const double v = mesh_volume(mesh, i), c = sim->c->v[i];
     double u2 = 0, phase = 0;
     for (int d = 0; d < DIM; d++) {
       u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
@@ -427,7 +427,7 @@ START_TEST(a_drop_falls_freely) {
     done = step_advance(sim, 0.5 - sim->time) == EXIT_DONE;
   }
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double part = sim->c->v[i] * sim->mesh->volume[i] / mass;
+    const double part = sim->c->v[i] * mesh_volume(sim->mesh, i) / mass;
     speed -= part * sim->u[DIM - 1]->v[i];
     fall += part * (body.centre[DIM - 1] - sim->mesh->x[i][DIM - 1]);
   }

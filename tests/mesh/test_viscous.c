@@ -131,8 +131,8 @@ START_TEST(momentum_balances) {
   viscous_force(s->mesh, s->eta_f, s->u, s->rhs);
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
-      sum[d] += s->mesh->volume[i] * s->rhs[d][i];
-      size += s->mesh->volume[i] * fabs(s->rhs[d][i]);
+      sum[d] += mesh_volume(s->mesh, i) * s->rhs[d][i];
+      size += mesh_volume(s->mesh, i) * fabs(s->rhs[d][i]);
     }
   }
   size = mesh_sum(s->mesh, size);
@@ -150,9 +150,9 @@ START_TEST(dissipation_is_the_work_of_the_force) {
   viscous_force(s->mesh, s->eta_f, s->u, s->rhs);
   viscous_dissipation(s->mesh, s->eta_f, s->u, heat);
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
-    sum += s->mesh->volume[i] * heat[i];
+    sum += mesh_volume(s->mesh, i) * heat[i];
     for (int d = 0; d < DIM; d++) {
-      work -= s->mesh->volume[i] * s->u[d][i] * s->rhs[d][i];
+      work -= mesh_volume(s->mesh, i) * s->u[d][i] * s->rhs[d][i];
     }
   }
   work = mesh_sum(s->mesh, work);
@@ -202,7 +202,7 @@ static double wave_error(int base, int level, bool *converged) {
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
       const double e = s->u[d][i] - wave(s->mesh->x[i], d);
-      error += s->mesh->volume[i] * e * e;
+      error += mesh_volume(s->mesh, i) * e * e;
     }
   }
   error = sqrt(mesh_sum(s->mesh, error));
@@ -294,7 +294,7 @@ START_TEST(solution_does_not_depend_on_ranks) {
                       s->bc, 1e-10, MOST, s->u);
     double local = 0;
     for (int32_t i = 0; i < s->mesh->nleaves; i++) {
-      local += s->mesh->volume[i] * (s->u[0][i] + 2 * s->u[1][i]);
+      local += mesh_volume(s->mesh, i) * (s->u[0][i] + 2 * s->u[1][i]);
     }
     sum[alone] = mesh_sum(s->mesh, local);
     iterations[alone] = stats.iterations;
