@@ -200,6 +200,7 @@ static void add_scratch(struct simulation *sim) {
   sim->rho = add_cell(sim, "density", "kg/m^3", "density", REMAP_NONE, false);
   sim->eta = add_cell(sim, "viscosity", "Pa s", "viscosity, mean of the faces",
                       REMAP_AVERAGE, true);
+  sim->eta->old = sim->eta; /* a step that fails does not touch it */
   sim->frozen = add_cell(sim, "frozen", "1", "", REMAP_NONE, false);
   sim->plane = add_cell(sim, "plane", "1", "", REMAP_NONE, false);
   sim->band = add_cell(sim, "band", "1", "", REMAP_NONE, false);

@@ -79,6 +79,7 @@ void fields_restore(struct fields *fields, const struct mesh *mesh) {
     if (!field->restart) continue;
     const double *before = field->old ? field->old->v : field->saved;
     CHECK(before, "field '%s' was not saved", field->name);
+    if (before == field->v) continue;
     memcpy(field->v, before, saved_length(field, mesh) * sizeof(double));
   }
 }
