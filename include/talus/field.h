@@ -44,9 +44,9 @@ struct field {
                               suffix "_x", "_y", "_z"; else -1 */
   double *v;               /* owned */
   double *saved;           /* owned: copy made by fields_save, NULL before */
-  const struct field *old; /* has what v was when fields_save was called, so
-                              that it makes no copy, itself if v stays as it
-                              is; NULL: none has */
+  const struct field *old; /* has what v was when fields_save was called once
+                              fields_restore is, so that no copy is made;
+                              itself if v stays as it is; NULL: none has */
   bool on_demand; /* v is NULL but while somebody (who allocates it, on the
                      leaves, and frees it) needs it */
   struct bc bc[MESH_MAX_PATCHES];

@@ -219,6 +219,7 @@ static void add_scratch(struct simulation *sim) {
   sim->alpha_f = add_face(sim, "face_specific_volume");
   sim->gravity_f = add_face(sim, "face_gravity");
   sim->u_half = add_face(sim, "face_half");
+  sim->u_f->old = sim->u_half; /* when a step has failed */
   for (int k = 0; k < DIM + 1; k++) sim->face[k] = add_face(sim, face[k]);
 }
 

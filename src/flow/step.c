@@ -466,17 +466,15 @@ static void repeat_properties(struct simulation *sim, int k) {
   }
 }
 
-/* How far repetition k has moved u_f, which is kept for the next one. The
- * predictor, whose place it takes, has done its work. */
+/* How far repetition k has moved u_f from what project has kept. */
 static void measure_repetition(struct simulation *sim, int k) {
   const struct mesh *mesh = sim->mesh;
-  double *last = sim->u_half->v, change = 0;
-  if (sim->params->picard == 0) return;
+  const double *last = sim->face[DIM]->v;
+  double change = 0;
+  if (k == 0) return;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     change = max2(change, fabs(sim->u_f->v[f] - last[f]));
-    last[f] = sim->u_f->v[f];
   }
-  if (k == 0) return;
   sim->repeat_change = mesh_max(mesh, change);
   log_info("step %lld, repetition %d: velocity changes by %.3g of %.3g",
            (long long)sim->step, k, sim->repeat_change, sim->scale);
@@ -518,11 +516,26 @@ static void anchor_pressure(struct simulation *sim) {
   for (int32_t i = 0; i < mesh->nleaves; i++) sim->p->v[i] += shift;
 }
 
-/* Stage 7: u^{n+1}, u_f^{n+1}, p^{n+1/2}. */
-static void project(struct simulation *sim, double dt) {
+/* Room for the new u_f. The first takes that of the predictor, which has done
+ * its work, and leaves the last step's there, should this one fail (u_f->old).
+ * A repetition overwrites the new one, and keeps it to be compared. */
+static void turn_face_velocity(struct simulation *sim, int k) {
+  double *last = sim->u_f->v;
+  if (k > 0) {
+    memcpy(sim->face[DIM]->v, last,
+           (size_t)sim->mesh->nfaces_all * sizeof(double));
+    return;
+  }
+  sim->u_f->v = sim->u_half->v;
+  sim->u_half->v = last;
+}
+
+/* Stage 7: u^{n+1}, u_f^{n+1}, p^{n+1/2}; repetition k of it. */
+static void project(struct simulation *sim, double dt, int k) {
   const struct mesh *mesh = sim->mesh;
   struct projection projection = projection_of(sim);
   double *u[DIM], *g[DIM];
+  turn_face_velocity(sim, k);
   velocities(sim->u, u), velocities(sim->g, g);
   field_fill_many(mesh, DIM, sim->u);
   projection_face_velocity(&projection, dt, u, sim->u_f->v);
@@ -628,7 +641,7 @@ static void advance_state(struct simulation *sim, double dt, double dt_c) {
     const struct solve_stats viscous = sim->viscous, pressure = sim->pressure;
     repeat_properties(sim, k), lap(sim, STAGE_RHEOLOGY);
     diffuse_momentum(sim, dt), lap(sim, STAGE_VISCOUS);
-    project(sim, dt), lap(sim, STAGE_PROJECTION);
+    project(sim, dt, k), lap(sim, STAGE_PROJECTION);
     if (k > 0) add_solve(&sim->viscous, &viscous);
     if (k > 0) add_solve(&sim->pressure, &pressure);
     measure_repetition(sim, k), lap(sim, STAGE_OTHER);
