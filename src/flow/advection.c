@@ -21,28 +21,25 @@ static inline double limited(enum limiter limiter, double a, double b) {
   return copysign(min2(most, fabs(mean)), mean);
 }
 
-/* Slopes along d of u_e, and its upwind change along the other axes with the
- * velocities w: cell velocities, or (u_f given) the mean of the two faces. */
-static void cell_terms(const struct mesh *mesh, int d, const double *u_e,
-                       double *const u[DIM], const double *u_f,
-                       enum limiter limiter, double *slope,
-                       double *transverse) {
-  const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t *node = mesh->stencil[i];
-    slope[i] =
-        limited(limiter, u_e[i] - u_e[node[lower]], u_e[node[upper]] - u_e[i]);
+/* Slopes along d of the components u_e of a leaf, first <= e < end, and their
+ * upwind changes along the other axes with its velocities w, times h. */
+static inline void leaf_terms(enum limiter limiter, int d, const int32_t *node,
+                              int32_t i, const double w[DIM], int first,
+                              int end, double *const u[DIM],
+                              const struct advection_work *work, double h) {
+  for (int e = first; e < end; e++) {
+    const double *u_e = u[e], here = u_e[i];
     double sum = 0;
     for (int t = 0; t < DIM; t++) {
-      if (t == d) continue;
-      const int32_t *face = mesh->cell_face[i];
-      const double w =
-          u_f ? 0.5 * (u_f[face[2 * t]] + u_f[face[2 * t + 1]]) : u[t][i];
-      const double below = u_e[i] - u_e[node[stencil_face(2 * t)]];
-      const double above = u_e[node[stencil_face(2 * t + 1)]] - u_e[i];
-      sum += w * (w < 0 ? above : below);
+      const double below = here - u_e[node[stencil_face(2 * t)]];
+      const double above = u_e[node[stencil_face(2 * t + 1)]] - here;
+      if (t == d) {
+        work->slope[e][i] = limited(limiter, below, above);
+      } else {
+        sum += w[t] * (w[t] < 0 ? above : below);
+      }
     }
-    transverse[i] = sum / mesh->h[i];
+    work->transverse[e][i] = sum / h;
   }
 }
 
@@ -50,18 +47,18 @@ static void cell_terms(const struct mesh *mesh, int d, const double *u_e,
 struct upwind {
   const int32_t *node; /* on both sides */
   int32_t from, leaf;  /* upwind node and leaf; leaf -1: a boundary */
-  double reach, ratio; /* half edges from the node to where the value comes
-                          from; edge of the face by that of the leaf */
+  double reach;        /* edges of the leaf from the node to where the value
+                          comes from */
 };
 
 static inline struct upwind upwind_of(const struct mesh *mesh, int32_t f,
                                       double u_n, double dt) {
   const int side = u_n > 0 ? 0 : 1;
   const int32_t *node = mesh->face_node[f];
-  struct upwind up = {node, node[side], mesh->face_leaf[f][side], 0, 0};
+  struct upwind up = {node, node[side], mesh->face_leaf[f][side], 0};
   if (up.leaf < 0) return up;
   up.reach = (side ? -1 : 1) - u_n * dt / mesh->face_h[f];
-  up.ratio = mesh->face_h[f] / mesh->h[up.leaf];
+  up.reach *= up.from < mesh->begin_virtual ? 0.5 : 0.25; /* a coarse leaf */
   return up;
 }
 
@@ -71,7 +68,7 @@ static inline double face_value(const struct upwind *up, double dt,
                                 const double *slope, const double *transverse) {
   const int32_t *node = up->node;
   if (up->leaf < 0) return 0.5 * (u_e[node[0]] + u_e[node[1]]);
-  return u_e[up->from] + 0.5 * up->reach * slope[up->leaf] * up->ratio -
+  return u_e[up->from] + up->reach * slope[up->leaf] -
          0.5 * dt * transverse[up->leaf] +
          0.25 * dt * (g_e[node[0]] + g_e[node[1]]);
 }
@@ -79,9 +76,16 @@ static inline double face_value(const struct upwind *up, double dt,
 void advection_predict(const struct mesh *mesh, double dt, double *const u[DIM],
                        double *const g[DIM], const bool *closed,
                        struct advection_work *work, double *u_f) {
-  double *v[2] = {work->slope[0], work->transverse[0]};
+  const enum limiter limiter = work->limiter;
+#pragma GCC unroll 3 /* so that d is known in the loops */
   for (int d = 0; d < DIM; d++) {
-    cell_terms(mesh, d, u[d], u, NULL, work->limiter, v[0], v[1]);
+    double *v[2] = {work->slope[d], work->transverse[d]};
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      double w[DIM];
+      for (int t = 0; t < DIM; t++) w[t] = u[t][i];
+      leaf_terms(limiter, d, mesh->stencil[i], i, w, d, d + 1, u, work,
+                 mesh->h[i]);
+    }
     mesh_fill_ghosts(mesh, 2, v);
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
@@ -98,14 +102,22 @@ void advection_predict(const struct mesh *mesh, double dt, double *const u[DIM],
   mesh_fill_faces(mesh, 1, &u_f);
 }
 
-static void axis_fluxes(const struct mesh *mesh, int d, double dt,
-                        double *const u[DIM], double *const g[DIM],
-                        const double *u_f, const double *band,
-                        struct advection_work *work) {
+static inline void axis_fluxes(const struct mesh *mesh, int d, double dt,
+                               double *const u[DIM], double *const g[DIM],
+                               const double *u_f, const double *band,
+                               struct advection_work *work) {
+  const enum limiter limiter = work->limiter;
   double *v[2 * DIM];
   for (int e = 0; e < DIM; e++) {
     v[2 * e] = work->slope[e], v[2 * e + 1] = work->transverse[e];
-    cell_terms(mesh, d, u[e], u, u_f, work->limiter, v[2 * e], v[2 * e + 1]);
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t *face = mesh->cell_face[i];
+    double w[DIM];
+    for (int t = 0; t < DIM; t++) {
+      w[t] = 0.5 * (u_f[face[2 * t]] + u_f[face[2 * t + 1]]);
+    }
+    leaf_terms(limiter, d, mesh->stencil[i], i, w, 0, DIM, u, work, mesh->h[i]);
   }
   mesh_fill_ghosts(mesh, 2 * DIM, v);
   for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
@@ -125,6 +137,7 @@ void advection_momentum(const struct mesh *mesh, double dt,
                         double *const u[DIM], double *const g[DIM],
                         const double *u_f, const double *band,
                         struct advection_work *work, double *const out[DIM]) {
+#pragma GCC unroll 3
   for (int d = 0; d < DIM; d++) {
     axis_fluxes(mesh, d, dt, u, g, u_f, band, work);
   }

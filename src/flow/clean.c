@@ -27,6 +27,7 @@ struct clean {
   int32_t ntrees;
   int trees[DIM];
   uint64_t tree_span;
+  double per_area[FOREST_MAX_LEVEL + 1]; /* 1/h^(DIM - 1) by level */
   int32_t *tree_number; /* [ntrees] curve number of the tree at a place */
   uint8_t *owned;    /* [nleaves] bit f: the leaf changes face f of its own */
   int32_t *boundary; /* [nboundary] faces on patches */
@@ -117,6 +118,9 @@ static void number_trees(struct clean *clean, const struct mesh *mesh) {
     clean->ntrees *= layout->trees[d];
   }
   clean->tree_span = mesh_key_span(0);
+  for (int l = 0; l <= FOREST_MAX_LEVEL; l++) {
+    clean->per_area[l] = pow(ldexp(1 / layout->size, l), DIM - 1);
+  }
   clean->root = MEM_NEW(int32_t, clean->ntrees);
   clean->tree_number = MEM_NEW(int32_t, clean->ntrees);
   clean->tree_net = MEM_NEW(double, clean->ntrees);
@@ -207,9 +211,8 @@ double clean_divergence(const struct mesh *mesh, const double *u_f) {
 
 /* Let the total excess of the leaves out through the open boundary faces. */
 static void balance_boundaries(struct clean *clean, const struct mesh *mesh,
-                               const bool *open, double *u_f) {
-  double sum[2] = {0}; /* net outflow, open area */
-  for (int32_t i = 0; i < mesh->nleaves; i++) sum[0] += clean->net[i];
+                               const bool *open, double excess, double *u_f) {
+  double sum[2] = {excess, 0}; /* net outflow, open area */
   for (int32_t k = 0; k < clean->nboundary; k++) {
     const int32_t f = clean->boundary[k];
     if (open[mesh->face_patch[f]]) sum[1] += pow(mesh->face_h[f], DIM - 1);
@@ -306,17 +309,17 @@ static void share_out(const double net[NCHILD], double change[NCHILD][NFACE]) {
 }
 
 /* A node is told how its face fluxes change: a leaf changes the velocities of
- * the faces it owns. */
+ * the faces it owns; per_area is 1 over the area of a face. */
 static void tell_node(struct clean *clean, const struct mesh *mesh,
-                      int32_t node, const double change[NFACE], double *u_f) {
+                      int32_t node, const double change[NFACE], double per_area,
+                      double *u_f) {
   if (node >= mesh->nleaves) {
     memcpy(clean->change[node - mesh->nleaves], change, sizeof *clean->change);
     return;
   }
-  const double area = mesh_volume(mesh, node) / mesh->h[node];
   for (int f = 0; f < NFACE; f++) {
     if (clean->owned[node] >> f & 1) {
-      u_f[mesh->cell_face[node][f]] += change[f] / area;
+      u_f[mesh->cell_face[node][f]] += change[f] * per_area;
     }
   }
 }
@@ -325,6 +328,7 @@ static void treat_node(struct clean *clean, const struct mesh *mesh, int32_t k,
                        double *u_f) {
   double net[NCHILD], change[NCHILD][NFACE];
   const double *above = clean->change[k];
+  const double per_area = clean->per_area[clean->level[k] + 1];
   for (int c = 0; c < NCHILD; c++) {
     const int32_t child = clean->child[k][c];
     net[c] = clean->slot[k] >= 0 ? clean->shared[clean->slot[k] * NCHILD + c]
@@ -338,7 +342,7 @@ static void treat_node(struct clean *clean, const struct mesh *mesh, int32_t k,
   share_out(net, change);
   for (int c = 0; c < NCHILD; c++) {
     const int32_t child = clean->child[k][c];
-    if (child >= 0) tell_node(clean, mesh, child, change[c], u_f);
+    if (child >= 0) tell_node(clean, mesh, child, change[c], per_area, u_f);
   }
 }
 
@@ -346,15 +350,18 @@ void clean_face_velocity(struct clean *clean, const struct mesh *mesh,
                          const bool *open, double *u_f) {
   CHECK(clean->revision == mesh->revision, "tree of another mesh");
   mesh_fill_faces(mesh, 1, &u_f);
+  double excess = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     clean->net[i] = net_outflow(mesh, u_f, i);
+    excess += clean->net[i];
   }
-  balance_boundaries(clean, mesh, open, u_f);
+  balance_boundaries(clean, mesh, open, excess, u_f);
   gather_net(clean, mesh);
   balance_trees(clean);
   for (int32_t t = 0; t < clean->ntrees; t++) {
     if (clean->root[t] < 0) continue;
-    tell_node(clean, mesh, clean->root[t], clean->tree_change[t], u_f);
+    tell_node(clean, mesh, clean->root[t], clean->tree_change[t],
+              clean->per_area[0], u_f);
   }
   for (int32_t k = 0; k < clean->ninner; k++) treat_node(clean, mesh, k, u_f);
   mesh_fill_faces(mesh, 1, &u_f);

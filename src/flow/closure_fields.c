@@ -22,8 +22,8 @@ static void slopes(const struct mesh *mesh, const double *c,
   const bool lower = gas || is_grains(c[low]);
   const bool upper = gas || is_grains(c[high]);
   const int32_t from = lower ? low : i, to = upper ? high : i;
-  const double span = mesh->h[i] * (lower && upper ? 2 : 1);
-  for (int e = 0; e < DIM; e++) grad[e] = (u[e][to] - u[e][from]) / span;
+  const double k = (lower && upper ? 0.5 : 1) / mesh->h[i];
+  for (int e = 0; e < DIM; e++) grad[e] = k * (u[e][to] - u[e][from]);
 }
 
 static double leaf_shear_squared(const struct mesh *mesh, const double *c,

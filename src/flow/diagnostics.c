@@ -17,9 +17,8 @@ struct sum {
 };
 
 static inline void sum_add(struct sum *sum, double x) {
-  double t = sum->value + x;
-  sum->rest +=
-      fabs(sum->value) >= fabs(x) ? (sum->value - t) + x : (x - t) + sum->value;
+  double t = sum->value + x, added = t - sum->value;
+  sum->rest += (sum->value - (t - added)) + (x - added);
   sum->value = t;
 }
 

@@ -8,6 +8,8 @@
 
 void momentum_mark_band(const struct mesh *mesh, const double *c,
                         double *band) {
+  static const struct bc neumann[MESH_MAX_PATCHES];
+  const struct bc *bc[] = {neumann};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double low = 1, high = 0;
     for (int s = 0; s < NSTENCIL; s++) {
@@ -16,7 +18,7 @@ void momentum_mark_band(const struct mesh *mesh, const double *c,
     }
     band[i] = high > VOF_EMPTY && low < 1 - VOF_EMPTY;
   }
-  mesh_fill_ghosts(mesh, 1, &band);
+  mesh_fill(mesh, 1, &band, bc, true);
 }
 
 static double minmod(double a, double b) {
@@ -24,12 +26,16 @@ static double minmod(double a, double b) {
   return fabs(a) < fabs(b) ? a : b;
 }
 
-/* Limited differences of u_e along d, per leaf edge; none in cut leaves. */
+/* Limited differences of u_e along d, per leaf edge, of leaves that have a face
+ * in the band; none in cut leaves. */
 static void limited_slopes(const struct mesh *mesh, int d, const double *c,
-                           double *const u[DIM], double *const slope[DIM]) {
+                           const double *band, double *const u[DIM],
+                           double *const slope[DIM]) {
   const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t *node = mesh->stencil[i];
+    if (max2(band[i], max2(band[node[lower]], band[node[upper]])) <= 0)
+      continue;
     const bool cut = vof_is_cut(c[i]);
     for (int e = 0; e < DIM; e++) {
       const double left = u[e][i] - u[e][node[lower]];
@@ -44,7 +50,7 @@ void momentum_flux(const struct mesh *mesh, int d, double dt,
                    const double density[2], const double *u_f, const double *c,
                    const double *flux, const double *band, double *const u[DIM],
                    struct momentum_flux *out) {
-  limited_slopes(mesh, d, c, u, out->slope);
+  limited_slopes(mesh, d, c, band, u, out->slope);
   for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
     out->mass[f] = 0;
     for (int e = 0; e < DIM; e++) out->carried[e][f] = 0;
@@ -79,16 +85,15 @@ void momentum_update(const struct mesh *mesh, int d, double dt,
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t lower = mesh->cell_face[i][2 * d];
     const int32_t upper = mesh->cell_face[i][2 * d + 1];
-    const double k = dt / mesh->h[i];
-    const double rho_old = density[1] + c_old[i] * (density[0] - density[1]);
     const double mass[2] = {flux->mass[lower], flux->mass[upper]};
-    double rho = rho_old, dilation = 0;
+    if (band[i] == 0 && mass[0] == 0 && mass[1] == 0) continue;
+    const double k = dt / mesh->h[i];
+    double rho = density[1] + c_old[i] * (density[0] - density[1]);
+    double dilation = 0;
     if (band[i] > 0) {
       dilation =
           (cc[i] > 0 ? density[0] : density[1]) * (u_f[upper] - u_f[lower]);
       rho += k * (dilation - (mass[1] - mass[0]));
-    } else if (mass[0] == 0 && mass[1] == 0) {
-      continue;
     }
     for (int e = 0; e < DIM; e++) {
       const double *carried = flux->carried[e];

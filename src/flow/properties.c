@@ -73,8 +73,12 @@ static bool surface_level(const struct mesh *mesh, const double gravity[DIM],
 static void spread_level(const struct mesh *mesh,
                          const struct balance *balance) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double level = balance->level[i], count = balance->count[i];
-    for (int f = 0; f < NFACE && balance->count[i] == 0; f++) {
+    double level = balance->level[i], count = balance->count[i], near = 0;
+    for (int f = 0; f < NFACE; f++) { /* > 0 in children of a leaf with 1 */
+      near = max2(near, balance->count[mesh->stencil[i][stencil_face(f)]]);
+    }
+    const bool search = near > 0 && count == 0;
+    for (int f = 0; f < NFACE && search; f++) {
       int32_t node = mesh->stencil[i][stencil_face(f)];
       if (node >= mesh->begin_boundary) continue;
       if (node >= mesh->begin_virtual) {
@@ -189,8 +193,8 @@ static void line_halves(const struct mesh *mesh, int d, int32_t f,
 }
 
 /* 2 D:D at face f of axis d from the stencil of its owner. */
-static double face_shear_squared(const struct mesh *mesh, int d, int32_t f,
-                                 double *const u[DIM]) {
+static inline double face_shear_squared(const struct mesh *mesh, int d,
+                                        int32_t f, double *const u[DIM]) {
   const int32_t *node = mesh->face_node[f];
   const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
   const int other =
@@ -221,6 +225,7 @@ static double face_shear_squared(const struct mesh *mesh, int d, int32_t f,
 
 void properties_shear_rate(const struct mesh *mesh, double *const u[DIM],
                            double *shear_f) {
+#pragma GCC unroll 3 /* so that d is known in the loop over faces */
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       shear_f[f] = face_shear_squared(mesh, d, f, u);
@@ -309,7 +314,8 @@ static void mix_viscosity(const struct mesh *mesh, double time,
                           const double *theta_f, const double *shear_f,
                           const double *p_f, double *eta_f) {
   double eta_gas[BLOCK];
-  struct mixed m = {.n = 0};
+  struct mixed m;
+  m.n = 0; /* the rest, which is large, need not be cleared */
   for (int32_t begin = 0; begin < mesh->nfaces; begin += BLOCK) {
     const int32_t n =
         begin + BLOCK < mesh->nfaces ? BLOCK : mesh->nfaces - begin;

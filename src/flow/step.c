@@ -6,6 +6,7 @@
  * Invariants, between steps
  * 1. c, tracers, u, u_f, p, g are valid on leaves (u_f on all faces); ghosts
  *    and helper nodes of cell fields are not: every stage fills what it reads.
+ *    Within a step u_old, which does not change, is filled.
  * 2. u_f is divergence-free to round-off, by cleaning at the end of a step.
  * 3. Where planes_hold, `normal` and `plane` are those of c.
  */
@@ -180,6 +181,7 @@ static void advance_tracer(struct simulation *sim, double dt,
   }
 }
 
+/* u and c are filled. */
 static void sweep_grains(struct simulation *sim, int d, double dt) {
   const struct mesh *mesh = sim->mesh;
   double density[2], *u[DIM], *start[DIM], *normal[DIM];
@@ -193,8 +195,6 @@ static void sweep_grains(struct simulation *sim, int d, double dt) {
     flux.slope[e] = sim->cell[e]->v;
   }
   memcpy(c_old, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
-  field_fill_many(mesh, DIM, sim->u);
-  field_fill(mesh, sim->c);
   update_planes(sim);
   sweep_tracer(sim, d, dt, normal, sim->plane->v, sim->c->v);
   sim->planes_hold = false;
@@ -219,9 +219,10 @@ static void log_divergence(struct simulation *sim, double dt) {
 
 static void advance_fractions(struct simulation *sim, double dt) {
   const struct mesh *mesh = sim->mesh;
+  field_fill_many(mesh, DIM, sim->u);
   for (int e = 0; e < DIM; e++) {
     memcpy(sim->u_old[e]->v, sim->u[e]->v,
-           (size_t)mesh->nleaves * sizeof(double));
+           (size_t)mesh->ncells * sizeof(double));
   }
   for (int k = 0; k < sim->params->ntracers; k++) {
     advance_tracer(sim, dt, sim->tracer[k]);
@@ -231,6 +232,7 @@ static void advance_fractions(struct simulation *sim, double dt) {
   momentum_mark_band(mesh, sim->c->v, sim->band->v);
   vof_freeze(mesh, sim->c->v, sim->frozen->v);
   for (int s = 0; s < DIM; s++) {
+    if (s > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
     sweep_grains(sim, (int)((sim->step + s) % DIM), dt);
   }
   log_divergence(sim, dt);
@@ -284,13 +286,13 @@ static void add_dissipation(struct simulation *sim, double dt) {
   sim->energy.dissipated += dt * mesh_sum(mesh, sum);
 }
 
+/* The velocity is filled. */
 static void update_viscosity(struct simulation *sim,
                              struct field *const velocity[DIM]) {
   const struct mesh *mesh = sim->mesh;
   const struct params *params = sim->params;
   double *u[DIM], *normal[DIM];
   velocities(velocity, u), velocities(sim->normal, normal);
-  field_fill_many(mesh, DIM, velocity);
   field_fill(mesh, sim->p);
   properties_shear_rate(mesh, u, sim->face[0]->v);
   double *work[2] = {sim->face[1]->v, sim->face[2]->v};
@@ -458,7 +460,10 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
 static void repeat_properties(struct simulation *sim, int k) {
   const size_t bytes = (size_t)sim->mesh->nleaves * sizeof(double);
   if (sim->params->picard == 0) return;
-  if (k > 0) update_viscosity(sim, sim->u);
+  if (k > 0) {
+    field_fill_many(sim->mesh, DIM, sim->u);
+    update_viscosity(sim, sim->u);
+  }
   for (int e = 0; e < DIM; e++) {
     double *advected = sim->cell[DIM + e]->v;
     memcpy(k > 0 ? sim->u[e]->v : advected, k > 0 ? advected : sim->u[e]->v,
@@ -718,6 +723,7 @@ void step_start(struct simulation *sim) {
   const double divergence = clean_divergence(sim->mesh, sim->u_f->v);
   if (divergence > 0) make_solenoidal(sim, 1 / divergence, sim->u_f->v);
   sim->pressure = static_pressure(sim);
+  field_fill_many(sim->mesh, DIM, sim->u);
   update_viscosity(sim, sim->u);
   set_cell_viscosity(sim);
 }

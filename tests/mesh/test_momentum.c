@@ -241,6 +241,42 @@ START_TEST(the_band_is_the_surface_and_one_leaf_around_it) {
 }
 END_TEST
 
+/* Only leaves with a face in the band get slopes: its faces, also those on
+ * which leaves of two sizes meet, find there what they found if all had them.
+ */
+START_TEST(faces_of_the_band_find_the_slopes_they_need) {
+  struct bench *b = bench_new(1, true, 2, 5);
+  const struct mesh *mesh = b->mesh;
+  struct rider r = rider_new(b, 1e3);
+  double *u[DIM], *everywhere = bench_cell(b, "everywhere")->v;
+  double *carried = bench_face(b, "expected")->v;
+  field_arrays(r.u, u);
+  fill_shape(mesh, ball, &off_centre, r.t.c->v);
+  fill_faces(mesh, vortex, r.t.u_f->v);
+  fill_cells(mesh, uneven, r.u);
+  field_fill(mesh, r.t.c);
+  field_fill_many(mesh, DIM, r.u);
+  momentum_mark_band(mesh, r.t.c->v, r.band->v);
+  for (int32_t i = 0; i < mesh->ncells; i++) everywhere[i] = 1;
+  const double *c = r.t.c->v, *u_f = r.t.u_f->v, *flux = r.t.flux->v;
+  bool good = true;
+  for (int d = 0; d < DIM; d++) {
+    momentum_flux(mesh, d, 0.01, r.density, u_f, c, flux, everywhere, u,
+                  &r.flux);
+    memcpy(carried, r.flux.carried[0], (size_t)mesh->nfaces * sizeof *carried);
+    for (int32_t i = 0; i < mesh->nleaves; i++) r.flux.slope[0][i] = NAN;
+    momentum_flux(mesh, d, 0.01, r.density, u_f, c, flux, r.band->v, u,
+                  &r.flux);
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      good = good && (!momentum_face_in_band(mesh, r.band->v, f) ||
+                      r.flux.carried[0][f] == carried[f]);
+    }
+  }
+  ck_assert(all_ranks(good));
+  bench_destroy(b);
+}
+END_TEST
+
 Suite *momentum_suite(void) {
   Suite *suite = suite_create("momentum");
   TCase *tc = tcase_create("momentum");
@@ -250,6 +286,7 @@ Suite *momentum_suite(void) {
   tcase_add_loop_test(tc, sweeps_make_no_new_extremes, 0, 3);
   tcase_add_test(tc, momentum_that_rides_is_conserved);
   tcase_add_test(tc, the_band_is_the_surface_and_one_leaf_around_it);
+  tcase_add_test(tc, faces_of_the_band_find_the_slopes_they_need);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
   return suite;
