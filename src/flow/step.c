@@ -26,16 +26,9 @@
 #include "talus/properties.h"
 #include "talus/side_walls.h"
 #include "talus/simulation.h"
+#include "talus/time_step.h"
 #include "talus/viscous.h"
 #include "talus/vof.h"
-
-/* From one step to the next dt grows by at most this factor. */
-#define DT_GROWTH 1.2
-/* dt is at most this times sqrt(h / acceleration of the grains). */
-#define DT_ACCELERATION 0.1
-/* A step that makes up for a last one too long is at least this part of the
- * bound. */
-#define DT_SHRINK 0.2
 
 /* A stalled solve passes within this factor of its tolerance, or below the
  * second number, where round-off may be. */
@@ -71,77 +64,6 @@ static struct projection projection_of(struct simulation *sim) {
                              .max_iterations = sim->params->max_iterations,
                              .rhs = sim->cell[0]->v,
                              .flux = sim->face[0]->v};
-}
-
-/* Largest speed that a boundary gives to a face, in leaves per time (per_leaf)
- * or as it is: what a flow at rest is about to feel. This rank only. */
-static double boundary_speed(const struct simulation *sim, bool per_leaf) {
-  const struct mesh *mesh = sim->mesh;
-  double speed[MESH_MAX_PATCHES] = {0}, fastest = 0, most = 0;
-  for (int patch = 0; patch < MESH_MAX_PATCHES; patch++) {
-    for (int e = 0; e < DIM; e++) {
-      const struct bc *bc = &sim->u[e]->bc[patch];
-      if (bc->type != BC_DIRICHLET) continue;
-      speed[patch] = max2(speed[patch], fabs(bc->value));
-    }
-    fastest = max2(fastest, speed[patch]);
-  }
-  for (int32_t f = 0; f < mesh->nfaces && fastest > 0; f++) {
-    const int patch = mesh->face_patch[f];
-    if (patch < 0) continue;
-    most = max2(most, speed[patch] / (per_leaf ? mesh->face_h[f] : 1));
-  }
-  return most;
-}
-
-/* Largest dt with 1/2 sum |u_f| A dt / V <= cfl in every cell, gas included,
- * as VOF wants it. */
-static double cfl_bound(const struct simulation *sim) {
-  const struct mesh *mesh = sim->mesh;
-  double rate = boundary_speed(sim, true);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double sum = 0;
-    for (int f = 0; f < NFACE; f++) {
-      sum += fabs(sim->u_f->v[mesh->cell_face[i][f]]);
-    }
-    rate = max2(rate, 0.5 * sum / mesh->h[i]);
-  }
-  rate = mesh_max(mesh, rate);
-  return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
-}
-
-/* A part of the dt in which the acceleration g moves a cell of grains by its
- * size: the viscosity is that of the last strain rate, and lags behind while
- * a flow sets off. */
-static double acceleration_bound(const struct simulation *sim) {
-  const struct mesh *mesh = sim->mesh;
-  double most = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double largest = 0;
-    if (!(sim->c->v[i] > 0.5)) continue;
-    for (int d = 0; d < DIM; d++) {
-      largest = max2(largest, fabs(sim->g[d]->v[i]));
-    }
-    most = max2(most, largest / mesh->h[i]);
-  }
-  most = mesh_max(mesh, most);
-  return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;
-}
-
-/* Stage 1: dt of the step, and dt_c that takes c from t^{n-1/2} to t^{n+1/2}:
- * the mean of the last dt (0 at the start) and this one, which is chosen so
- * that both keep to the bound. */
-static double choose_dt(const struct simulation *sim, double dt_max,
-                        double *dt_c) {
-  const double bound = cfl_bound(sim);
-  double dt = min2(min2(dt_max, sim->params->dt_max),
-                   min2(bound, acceleration_bound(sim)));
-  if (sim->dt > 0) {
-    dt = min2(dt, DT_GROWTH * sim->dt);
-    dt = min2(dt, max2(2 * bound - sim->dt, DT_SHRINK * bound));
-  }
-  *dt_c = min2(0.5 * (sim->dt + dt), bound);
-  return dt;
 }
 
 /* Make the planes of c those of what it is now. c is filled. */
@@ -381,7 +303,7 @@ static void viscous_rhs(struct simulation *sim, double dt,
 
 /* Largest speed, or what gravity would make of rest in this step. */
 static double velocity_scale(const struct simulation *sim, double dt) {
-  double most = max2(1e-300, boundary_speed(sim, false));
+  double most = max2(1e-300, time_step_boundary_speed(sim, false));
   for (int d = 0; d < DIM; d++) {
     most = max2(most, dt * fabs(sim->params->gravity[d]));
   }
@@ -661,7 +583,7 @@ int step_advance(struct simulation *sim, double dt_max) {
   sim->mark = MPI_Wtime();
   fields_save(&sim->fields, sim->mesh);
   for (int attempt = 0;; attempt++) {
-    dt = choose_dt(sim, dt_max, &dt_c), lap(sim, STAGE_OTHER);
+    dt = time_step_choose(sim, dt_max, &dt_c), lap(sim, STAGE_OTHER);
     advance_state(sim, dt, dt_c);
     if (!has_failed(sim)) break;
     fields_restore(&sim->fields, sim->mesh);

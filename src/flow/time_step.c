@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/time_step.h"
+
+#include <math.h>
+
+#include "talus/minmax.h"
+#include "talus/simulation.h"
+
+/* From one step to the next dt grows by at most this factor. */
+#define DT_GROWTH 1.2
+/* dt is at most this times sqrt(h / acceleration of the grains). */
+#define DT_ACCELERATION 0.1
+/* A step that makes up for a last one too long is at least this part of the
+ * bound. */
+#define DT_SHRINK 0.2
+
+double time_step_boundary_speed(const struct simulation *sim, bool per_leaf) {
+  const struct mesh *mesh = sim->mesh;
+  double speed[MESH_MAX_PATCHES] = {0}, fastest = 0, most = 0;
+  for (int patch = 0; patch < MESH_MAX_PATCHES; patch++) {
+    for (int e = 0; e < DIM; e++) {
+      const struct bc *bc = &sim->u[e]->bc[patch];
+      if (bc->type != BC_DIRICHLET) continue;
+      speed[patch] = max2(speed[patch], fabs(bc->value));
+    }
+    fastest = max2(fastest, speed[patch]);
+  }
+  for (int32_t f = 0; f < mesh->nfaces && fastest > 0; f++) {
+    const int patch = mesh->face_patch[f];
+    if (patch < 0) continue;
+    most = max2(most, speed[patch] / (per_leaf ? mesh->face_h[f] : 1));
+  }
+  return most;
+}
+
+/* Largest dt with 1/2 sum |u_f| A dt / V <= cfl in every cell, gas included,
+ * as VOF wants it. */
+static double cfl_bound(const struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double rate = time_step_boundary_speed(sim, true);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double sum = 0;
+    for (int f = 0; f < NFACE; f++) {
+      sum += fabs(sim->u_f->v[mesh->cell_face[i][f]]);
+    }
+    rate = max2(rate, 0.5 * sum / mesh->h[i]);
+  }
+  rate = mesh_max(mesh, rate);
+  return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
+}
+
+/* A part of the dt in which the acceleration g moves a cell of grains by its
+ * size: the viscosity is that of the last strain rate, and lags behind while
+ * a flow sets off. */
+static double acceleration_bound(const struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double largest = 0;
+    if (!(sim->c->v[i] > 0.5)) continue;
+    for (int d = 0; d < DIM; d++) {
+      largest = max2(largest, fabs(sim->g[d]->v[i]));
+    }
+    most = max2(most, largest / mesh->h[i]);
+  }
+  most = mesh_max(mesh, most);
+  return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;
+}
+
+double time_step_choose(const struct simulation *sim, double dt_max,
+                        double *dt_c) {
+  const double bound = cfl_bound(sim);
+  double dt = min2(min2(dt_max, sim->params->dt_max),
+                   min2(bound, acceleration_bound(sim)));
+  if (sim->dt > 0) {
+    dt = min2(dt, DT_GROWTH * sim->dt);
+    dt = min2(dt, max2(2 * bound - sim->dt, DT_SHRINK * bound));
+  }
+  *dt_c = min2(0.5 * (sim->dt + dt), bound);
+  return dt;
+}
