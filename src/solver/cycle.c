@@ -317,8 +317,8 @@ KERNEL void cycle(struct hierarchy *h, int nparts) {
   }
 }
 
-KERNEL void run(struct hierarchy *h, double sign, const double *r, double *e,
-                int nparts) {
+KERNEL void run(struct hierarchy *h, double factor, const double *r,
+                float *const e[2], int nparts) {
   const struct mesh *mesh = h->mesh;
   const size_t size = (size_t)h->nslots * sizeof(double);
   for (int c = 0; c < nparts; c++) {
@@ -327,22 +327,28 @@ KERNEL void run(struct hierarchy *h, double sign, const double *r, double *e,
     memset(h->r[c], 0, size);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       h->r[c][h->leaf_slot[i]] =
-          sign * mesh_volume(mesh, i) * r[(int64_t)c * mesh->nleaves + i];
+          factor * mesh_volume(mesh, i) * r[(int64_t)c * mesh->nleaves + i];
     }
   }
   cycle(h, nparts);
   for (int c = 0; c < nparts; c++) {
+    const int64_t at = (int64_t)c * mesh->nleaves;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      e[(int64_t)c * mesh->nleaves + i] = h->e[c][h->leaf_slot[i]];
+      e[0][at + i] = (float)h->e[c][h->leaf_slot[i]];
+    }
+    if (!e[1]) continue;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      e[1][at + i] = (float)(h->e[c][h->leaf_slot[i]] - (double)e[0][at + i]);
     }
   }
 }
 
-void cycle_run(struct hierarchy *h, double sign, const double *r, double *e) {
+void cycle_run(struct hierarchy *h, double factor, const double *r,
+               float *const e[2]) {
   h->ncycles++;
   if (h->nparts == 1) {
-    run(h, sign, r, e, 1);
+    run(h, factor, r, e, 1);
   } else {
-    run(h, sign, r, e, DIM);
+    run(h, factor, r, e, DIM);
   }
 }

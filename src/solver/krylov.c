@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/krylov.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -11,13 +12,21 @@
 /* A guess passes only at this part of the tolerance: errors just below it, of
  * one sign, would add up from step to step. */
 #define KRYLOV_GUESS 1e-6
-
-enum { KRYLOV_FEW = 8 }; /* directions, at least, between forgetting them */
+/* Floats are too short where they may lose this part of the residual that was
+ * there at first: it has grown tenfold or more. */
+#define KRYLOV_GROWTH 1e-6
+/* A step that takes less than this part of <r, r> is a poor one. */
+#define KRYLOV_LITTLE 0.1
 
 struct krylov_space {
-  int64_t size;                                        /* of each direction */
-  double *z[KRYLOV_DIRECTIONS], *q[KRYLOV_DIRECTIONS]; /* NULL: never used */
-  double inverse[KRYLOV_DIRECTIONS];                   /* 1 / <q, q> */
+  int64_t size; /* of each direction */
+  int used;     /* directions of the solve under way */
+  int terms;    /* each number is a sum of: 1 float, or 2 for 48 bits */
+  float *z[KRYLOV_DIRECTIONS][2], *q[KRYLOV_DIRECTIONS][2]; /* NULL: never */
+  double inverse[KRYLOV_DIRECTIONS];                        /* 1 / <q, q> */
+  double most[KRYLOV_DIRECTIONS]; /* bound of max |q / rho| */
+  double a[KRYLOV_DIRECTIONS];    /* steps that r has made and x has not */
+  double h[KRYLOV_DIRECTIONS][KRYLOV_DIRECTIONS]; /* h_jk at [k][j], j < k */
 };
 
 struct krylov_space *krylov_space_new(void) {
@@ -26,9 +35,11 @@ struct krylov_space *krylov_space_new(void) {
 
 static void space_clear(struct krylov_space *space) {
   for (int k = 0; k < KRYLOV_DIRECTIONS; k++) {
-    mem_free(space->z[k]);
-    mem_free(space->q[k]);
-    space->z[k] = space->q[k] = NULL;
+    for (int t = 0; t < 2; t++) {
+      mem_free(space->z[k][t]);
+      mem_free(space->q[k][t]);
+      space->z[k][t] = space->q[k][t] = NULL;
+    }
   }
 }
 
@@ -40,18 +51,28 @@ void krylov_space_destroy(struct krylov_space *space) {
 
 int64_t krylov_space_bytes(const struct krylov_space *space) {
   int64_t n = 0;
-  for (int k = 0; k < KRYLOV_DIRECTIONS; k++) n += space->z[k] ? 2 : 0;
-  return n * space->size * (int64_t)sizeof(double);
+  for (int k = 0; k < KRYLOV_DIRECTIONS; k++) {
+    n += (space->z[k][0] ? 2 : 0) + (space->z[k][1] ? 2 : 0);
+  }
+  return n * space->size * (int64_t)sizeof(float);
 }
 
-static void space_take(struct krylov_space *space, int k, int64_t size) {
-  if (size > space->size) {
-    space_clear(space);
-    space->size = size;
+/* For vectors of `size` numbers. */
+static void space_open(struct krylov_space *space, int64_t size) {
+  space->used = 0;
+  space->terms = 1;
+  if (size <= space->size) return;
+  space_clear(space);
+  space->size = size;
+}
+
+static void space_take(struct krylov_space *space, int k) {
+  space->a[k] = 0;
+  for (int t = 0; t < space->terms; t++) {
+    if (space->z[k][t]) continue;
+    space->z[k][t] = MEM_NEW(float, space->size);
+    space->q[k][t] = MEM_NEW(float, space->size);
   }
-  if (space->z[k]) return;
-  space->z[k] = MEM_NEW(double, space->size);
-  space->q[k] = MEM_NEW(double, space->size);
 }
 
 static void sum_ranks(const struct krylov_system *s, int n, double *v) {
@@ -67,18 +88,35 @@ struct lanes {
   double sum[LANES];
 };
 
+/* Sum of w^2 a b. */
 static void add_products(int64_t n, const float *w, const double *a,
-                         const double *b, struct lanes *restrict lanes) {
+                         const float *b, struct lanes *restrict lanes) {
   int64_t i = 0;
   for (; i + LANES <= n; i += LANES) {
     for (int k = 0; k < LANES; k++) {
       const double s = (double)w[i + k] * (double)w[i + k];
-      lanes->sum[k] += s * a[i + k] * b[i + k];
+      lanes->sum[k] += s * a[i + k] * (double)b[i + k];
     }
   }
   for (int k = 0; i + k < n; k++) {
     const double s = (double)w[i + k] * (double)w[i + k];
-    lanes->sum[k] += s * a[i + k] * b[i + k];
+    lanes->sum[k] += s * a[i + k] * (double)b[i + k];
+  }
+}
+
+/* Sum of w^2 a^2. */
+static void add_squares(int64_t n, const float *w, const double *a,
+                        struct lanes *restrict lanes) {
+  int64_t i = 0;
+  for (; i + LANES <= n; i += LANES) {
+    for (int k = 0; k < LANES; k++) {
+      const double v = (double)w[i + k] * a[i + k];
+      lanes->sum[k] += v * v;
+    }
+  }
+  for (int k = 0; i + k < n; k++) {
+    const double v = (double)w[i + k] * a[i + k];
+    lanes->sum[k] += v * v;
   }
 }
 
@@ -134,119 +172,235 @@ static double max_residual(const struct krylov_system *s, const double *r) {
 
 /* a += f b */
 static void add_to(int64_t n, double *restrict a, double f,
-                   const double *restrict b) {
-  for (int64_t i = 0; i < n; i++) a[i] += f * b[i];
+                   const float *restrict b) {
+  for (int64_t i = 0; i < n; i++) a[i] += f * (double)b[i];
 }
 
-/* v += sum of a[j] times the `kept` vectors before number k. */
-static void add_others(int64_t n, double *const vector[KRYLOV_DIRECTIONS],
-                       int k, int kept, const double *a) {
-  for (int64_t i = 0; i < n; i += BLOCK) {
-    for (int j = 0; j < kept; j++) {
-      const int other = (k + KRYLOV_DIRECTIONS - 1 - j) % KRYLOV_DIRECTIONS;
-      add_to(block_size(n, i), vector[k] + i, a[j], vector[other] + i);
-    }
-  }
-}
-
-/* Make direction k orthogonal to the `kept` others before it. */
-static void orthogonalise(const struct krylov_system *s,
-                          struct krylov_space *space, int k, int kept) {
-  const int64_t n = (int64_t)s->n * s->nparts;
+/* c_j = <v, q_j> / <q_j, q_j>, j of all directions so far. */
+static void project(const struct krylov_system *s,
+                    const struct krylov_space *space, double *const v[],
+                    double *c) {
   struct lanes lanes[KRYLOV_DIRECTIONS] = {{{0}}};
-  double a[KRYLOV_DIRECTIONS];
-  if (kept == 0) return;
-  for (int64_t i = 0; i < n; i += BLOCK) {
-    for (int j = 0; j < kept; j++) {
-      const int other = (k + KRYLOV_DIRECTIONS - 1 - j) % KRYLOV_DIRECTIONS;
-      add_products(block_size(n, i), s->weight + i, space->q[k] + i,
-                   space->q[other] + i, &lanes[j]);
+  const int terms = space->terms;
+  for (int p = 0; p < s->nparts; p++) {
+    const int64_t at = (int64_t)p * s->n;
+    for (int64_t i = 0; i < s->n; i += BLOCK) {
+      for (int k = 0; k < space->used * terms; k++) {
+        const float *q = space->q[k / terms][k % terms] + at;
+        add_products(block_size(s->n, i), s->weight + at + i, v[p] + i, q + i,
+                     &lanes[k / terms]);
+      }
     }
   }
-  for (int j = 0; j < kept; j++) a[j] = lanes_sum(&lanes[j]);
-  sum_ranks(s, kept, a);
-  for (int j = 0; j < kept; j++) {
-    a[j] *=
-        -space->inverse[(k + KRYLOV_DIRECTIONS - 1 - j) % KRYLOV_DIRECTIONS];
-  }
-  add_others(n, space->q, k, kept, a);
-  add_others(n, space->z, k, kept, a);
+  for (int j = 0; j < space->used; j++) c[j] = lanes_sum(&lanes[j]);
+  sum_ranks(s, space->used, c);
+  for (int j = 0; j < space->used; j++) c[j] *= space->inverse[j];
 }
 
-/* Next direction: precondition, apply, make orthogonal to the `kept` ones
- * before it. Leaves <r, q>, <q, q>, <r, r>. */
-static void make_direction(const struct krylov_system *s,
-                           struct krylov_space *space, int k, int kept,
-                           const double *r, double product[3]) {
-  const int64_t n = (int64_t)s->n * s->nparts;
-  space_take(space, k, n);
-  double *q = space->q[k];
-  s->precondition(s->context, r, space->z[k]);
-  s->apply(s->context, space->z[k], q);
-  orthogonalise(s, space, k, kept);
+/* v += sign sum_j c_j d_j, d the z or q of all directions so far. */
+static void add_all(const struct krylov_system *s,
+                    const struct krylov_space *space, double *const v[],
+                    double sign, const double *c,
+                    float *const d[KRYLOV_DIRECTIONS][2]) {
+  const int terms = space->terms;
+  for (int p = 0; p < s->nparts; p++) {
+    const int64_t at = (int64_t)p * s->n;
+    for (int64_t i = 0; i < s->n; i += BLOCK) {
+      for (int k = 0; k < space->used * terms; k++) {
+        add_to(block_size(s->n, i), v[p] + i, sign * c[k / terms],
+               d[k / terms][k % terms] + at + i);
+      }
+    }
+  }
+}
+
+/* Make v orthogonal to the directions so far: v -= sum c_j q_j. */
+static void orthogonalise(const struct krylov_system *s,
+                          const struct krylov_space *space, double *const v[],
+                          double *c) {
+  if (space->used == 0) return;
+  project(s, space, v, c);
+  add_all(s, space, v, -1, c, space->q);
+}
+
+/* q = v, rounded to its terms, and v likewise. */
+static void round_to(int64_t n, int terms, double *v, float *const q[2],
+                     int64_t at) {
+  for (int64_t i = 0; i < n; i++) {
+    q[0][at + i] = (float)v[i];
+    const double rest = v[i] - (double)q[0][at + i];
+    if (terms > 1) q[1][at + i] = (float)rest;
+    v[i] -= terms > 1 ? rest - (double)q[1][at + i] : rest;
+  }
+}
+
+/* Store v as the q of the next direction. Leaves <r, q>, <q, q>, <r, r>. */
+static void store(const struct krylov_system *s, struct krylov_space *space,
+                  double *const v[], const double *r, double product[3]) {
   struct lanes lanes[3] = {{{0}}};
-  for (int64_t i = 0; i < n; i += BLOCK) {
-    const int64_t size = block_size(n, i);
-    add_products(size, s->weight + i, r + i, q + i, &lanes[0]);
-    add_products(size, s->weight + i, q + i, q + i, &lanes[1]);
-    add_products(size, s->weight + i, r + i, r + i, &lanes[2]);
+  for (int p = 0; p < s->nparts; p++) {
+    for (int64_t i = 0; i < s->n; i += BLOCK) {
+      const int64_t at = (int64_t)p * s->n + i, size = block_size(s->n, i);
+      const float *w = s->weight + at;
+      float *const *q = space->q[space->used];
+      round_to(size, space->terms, v[p] + i, q, at);
+      for (int t = 0; t < space->terms; t++) {
+        add_products(size, w, r + at, q[t] + at, &lanes[0]);
+      }
+      add_squares(size, w, v[p] + i, &lanes[1]);
+      add_squares(size, w, r + at, &lanes[2]);
+    }
   }
   for (int j = 0; j < 3; j++) product[j] = lanes_sum(&lanes[j]);
   sum_ranks(s, 3, product);
-  space->inverse[k] = 1 / product[1];
+  space->inverse[space->used] = 1 / product[1];
+}
+
+/* Next direction, for r of size max |r/rho|: precondition, apply, make
+ * orthogonal to those before it. Leaves <r, q>, <q, q>, <r, r>. */
+static void make_direction(const struct krylov_system *s,
+                           struct krylov_space *space, const double *r,
+                           double size, double product[3]) {
+  const int k = space->used;
+  double *q[KRYLOV_PARTS];
+  space_take(space, k);
+  float *const z[] = {space->z[k][0], space->terms > 1 ? space->z[k][1] : NULL};
+  s->precondition(s->context, r, size, z);
+  s->apply(s->context, z, q);
+  orthogonalise(s, space, q, space->h[k]);
+  store(s, space, q, r, product);
+}
+
+/* y: along z what steps a are along directions made orthogonal. */
+static void find_steps(const struct krylov_space *space, double *y) {
+  memcpy(y, space->a, (size_t)space->used * sizeof *y);
+  for (int k = space->used - 1; k > 0; k--) {
+    for (int j = 0; j < k; j++) y[j] -= space->h[k][j] * y[k];
+  }
+}
+
+/* Bound of max |r/rho| of what is missing in r: y q is as wrong as q. What 48
+ * bits lose is round-off. */
+static double rounding(const struct krylov_space *space) {
+  double y[KRYLOV_DIRECTIONS], sum = 0;
+  if (space->terms > 1) return 0;
+  find_steps(space, y);
+  for (int k = 0; k < space->used; k++) sum += fabs(y[k]) * space->most[k];
+  return 0.5 * (double)FLT_EPSILON * sum;
 }
 
 /* Where an iteration stands. */
 struct progress {
-  int kept;         /* directions that new ones are made orthogonal to */
+  double size;      /* max |r/rho| */
+  double start;     /* the same when r was last taken from x */
+  double lost;      /* bound of what rounding took from r since */
+  double forgotten; /* the part of it that directions forgotten did */
   int waited;       /* iterations since <r, r> was halved */
-  double reference; /* <r, r> then */
-  double first;     /* <r, r> at the start */
+  double reference; /* <r, r> then, 0: none yet */
 };
 
-/* Count an iteration. What round-off leaves of r along old directions cannot
- * be removed by new ones orthogonal to them: forget them when they are in the
- * way, 12 digits down; but not again before there are a few new ones, without
- * which a hard system makes no way at all. */
-static void progress_count(struct progress *p, const double product[3]) {
-  const double rr = product[2];
-  const double gain = product[0] * product[0] / product[1];
-  const bool halved = p->first == 0 || rr < 0.5 * p->reference;
-  if (p->first == 0) p->first = rr;
+static void progress_count(struct progress *p, double rr) {
+  const bool halved = p->reference == 0 || rr < 0.5 * p->reference;
   p->waited = halved ? 0 : p->waited + 1;
   if (halved) p->reference = rr;
-  p->kept += p->kept < KRYLOV_DIRECTIONS - 1;
-  const bool stuck = gain < 0.1 * rr && rr < 1e-24 * p->first;
-  if (stuck && p->kept >= KRYLOV_FEW) p->kept = 0;
+}
+
+/* Let x follow r and forget the directions. */
+static void restart(const struct krylov_system *s, struct krylov_space *space,
+                    struct progress *p, double *const x[]) {
+  double y[KRYLOV_DIRECTIONS];
+  find_steps(space, y);
+  add_all(s, space, x, 1, y, space->z);
+  space->used = 0;
+  p->forgotten = p->lost;
+}
+
+/* Is r so wrong, or so hard to reduce, that it must be taken from x? */
+static bool must_renew(const struct krylov_space *space,
+                       const struct progress *p, double tolerance) {
+  if (space->terms > 1) return false;
+  if (p->waited == KRYLOV_PATIENCE) return true;
+  return p->lost > 0.5 * tolerance &&
+         (p->size <= p->lost || p->lost > KRYLOV_GROWTH * p->start);
+}
+
+/* r = b - A x; directions get longer numbers where floats do not do. */
+static void renew(const struct krylov_system *s, struct krylov_space *space,
+                  struct progress *p, double *r, double *const x[]) {
+  const bool poor =
+      p->waited == KRYLOV_PATIENCE || p->lost > KRYLOV_GROWTH * p->start;
+  restart(s, space, p, x);
+  s->residual(s->context, x, r);
+  const double size = max_residual(s, r);
+  if (poor || size > 0.1 * p->start) space->terms = 2;
+  *p = (struct progress){.size = size, .start = size};
+}
+
+/* r -= a q along the next direction. Where that is little gain, what rounding
+ * has left of r along old directions may be in the way, which new ones,
+ * orthogonal to them, cannot remove: r is made orthogonal to all again. */
+static void step(const struct krylov_system *s, struct krylov_space *space,
+                 struct progress *p, const double product[3], double *r) {
+  const int k = space->used++;
+  const double a = product[0] / product[1];
+  double *part[KRYLOV_PARTS], c[KRYLOV_DIRECTIONS];
+  for (int t = 0; t < space->terms; t++) {
+    add_to((int64_t)s->n * s->nparts, r, -a, space->q[k][t]);
+  }
+  space->a[k] = a;
+  if (a * product[0] < KRYLOV_LITTLE * product[2]) {
+    for (int e = 0; e < s->nparts; e++) part[e] = r + (int64_t)e * s->n;
+    orthogonalise(s, space, part, c);
+    for (int j = 0; j <= k; j++) space->a[j] += c[j];
+  }
+  const double before = p->size;
+  p->size = max_residual(s, r);
+  space->most[k] = (before + p->size) / fabs(a);
+  p->lost = p->forgotten + rounding(space);
+}
+
+/* One iteration; false if it leads nowhere. */
+static bool iterate(const struct krylov_system *s, struct krylov_space *space,
+                    struct progress *p, double *r, double *const x[]) {
+  double product[3];
+  if (space->used == KRYLOV_DIRECTIONS) restart(s, space, p, x);
+  make_direction(s, space, r, p->size, product);
+  if (!isfinite(product[0] / product[1]) || product[0] == 0) return false;
+  progress_count(p, product[2]);
+  step(s, space, p, product, r);
+  return true;
 }
 
 struct solve_stats krylov_solve(const struct krylov_system *s,
                                 struct krylov_space *space, double tolerance,
                                 int max_iterations, double *r,
                                 double *const x[]) {
-  const int64_t n = (int64_t)s->n * s->nparts;
   struct solve_stats stats = {.status = SOLVE_STALLED};
-  struct progress progress = {0};
-  stats.residual_before = stats.residual_after = max_residual(s, r);
-  for (int k = 0;; k = (k + 1) % KRYLOV_DIRECTIONS) {
-    double product[3];
-    if (!isfinite(stats.residual_after)) return stats;
+  struct progress p = {0};
+  p.start = p.size = max_residual(s, r);
+  stats.residual_before = p.size;
+  space_open(space, (int64_t)s->n * s->nparts);
+  for (;;) {
     const double enough = stats.iterations > 0 ? 1 : KRYLOV_GUESS;
-    if (stats.residual_after <= enough * tolerance) break;
-    if (stats.iterations == max_iterations) return stats;
-    if (stats.iterations == 0) s->prepare(s->context);
-    make_direction(s, space, k, progress.kept, r, product);
-    const double a = product[0] / product[1];
-    if (!isfinite(a) || a == 0) return stats;
-    progress_count(&progress, product);
-    if (progress.waited == KRYLOV_PATIENCE) return stats;
-    for (int c = 0; c < s->nparts; c++) {
-      add_to(s->n, x[c], a, space->z[k] + (int64_t)c * s->n);
+    stats.residual_after = p.size;
+    if (!isfinite(p.size)) return stats;
+    if (p.size + p.lost <= enough * tolerance) {
+      stats.status = SOLVE_CONVERGED;
+      break;
     }
-    add_to(n, r, -a, space->q[k]);
-    stats.iterations++;
-    stats.residual_after = max_residual(s, r);
+    if (stats.iterations == max_iterations) break;
+    if (stats.iterations == 0) s->prepare(s->context);
+    if (must_renew(space, &p, tolerance)) {
+      renew(s, space, &p, r, x);
+      continue;
+    }
+    if (p.waited == KRYLOV_PATIENCE) break;
+    if (iterate(s, space, &p, r, x)) {
+      stats.iterations++;
+    } else {
+      p.waited = KRYLOV_PATIENCE;
+    }
   }
-  stats.status = SOLVE_CONVERGED;
+  restart(s, space, &p, x);
   return stats;
 }

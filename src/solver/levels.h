@@ -137,12 +137,14 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
                       double factor, const double *mass,
                       const struct bc *const bc[]);
 /* e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times
- * `sign`; e likewise. Collective. */
-void cycle_run(struct hierarchy *h, double sign, const double *r, double *e);
-/* Before each cycle on r [nparts * nleaves]: if the first one has raised max
- * |r / density|, [nleaves], NULL: 1, the others relax nodes near jumps
- * of the coefficient more often (rough.c). Uses h->e. Collective. */
-void rough_watch(struct hierarchy *h, const double *density, const double *r);
+ * `factor`; e likewise, e[0] rounded and e[1] what that misses, if it is not
+ * NULL. Collective. */
+void cycle_run(struct hierarchy *h, double factor, const double *r,
+               float *const e[2]);
+/* Before each cycle: if the first one has raised the residual, the others
+ * relax nodes near jumps of the coefficient more often (rough.c). Uses h->e.
+ * Collective. */
+void rough_watch(struct hierarchy *h, double residual);
 /* The cycle on the trees alone (coarse.c): from h->r to h->e. */
 void coarse_solve(struct hierarchy *h);
 

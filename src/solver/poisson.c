@@ -2,7 +2,6 @@
 #include "talus/poisson.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "levels.h"
 #include "talus/error.h"
@@ -10,8 +9,9 @@
 struct context {
   const struct mesh *mesh;
   struct hierarchy *h;
-  const double *alpha_f;
+  const double *alpha_f, *rhs;
   const struct bc *bc;
+  double excess; /* taken from rhs */
 };
 
 void poisson_flux(const struct mesh *mesh, const double *alpha_f,
@@ -23,9 +23,8 @@ void poisson_flux(const struct mesh *mesh, const double *alpha_f,
   mesh_fill_faces(mesh, 1, (double *const[]){flux});
 }
 
-/* q = div(alpha grad p), p filled. */
-static void divergence(const struct context *k, const double *p,
-                       double *restrict q) {
+/* q = div(alpha grad p), p filled; q may be p. */
+static void divergence(const struct context *k, const double *p, double *q) {
   const struct mesh *mesh = k->mesh;
   double *flux = k->h->work_faces;
   poisson_flux(mesh, k->alpha_f, p, flux);
@@ -39,18 +38,29 @@ static void divergence(const struct context *k, const double *p,
   }
 }
 
-static void apply(void *context, const double *z, double *q) {
+static void apply(void *context, float *const z[2], double *q[]) {
   const struct context *k = context;
   double *p = k->h->work_cells;
-  memcpy(p, z, (size_t)k->mesh->nleaves * sizeof *p);
+  krylov_direction(k->mesh->nleaves, 0, z, p);
   mesh_fill(k->mesh, 1, &p, &k->bc, true);
-  divergence(k, p, q);
+  divergence(k, p, p);
+  q[0] = p;
 }
 
-static void precondition(void *context, const double *r, double *z) {
+static void residual(void *context, double *const p[], double *r) {
   const struct context *k = context;
-  rough_watch(k->h, NULL, r);
-  cycle_run(k->h, -1, r, z);
+  mesh_fill(k->mesh, 1, p, &k->bc, false);
+  divergence(k, p[0], r);
+  for (int32_t i = 0; i < k->mesh->nleaves; i++) {
+    r[i] = k->rhs[i] - k->excess - r[i];
+  }
+}
+
+static void precondition(void *context, const double *r, double size,
+                         float *const z[2]) {
+  const struct context *k = context;
+  rough_watch(k->h, size);
+  cycle_run(k->h, -1 / size, r, z);
 }
 
 /* Does any face fix p itself? */
@@ -68,8 +78,8 @@ static bool has_level(const struct mesh *mesh, const double *alpha_f,
 
 /* Means over the volume of p, of the residual r, and of the terms it is made
  * of, each in absolute value. */
-static void means(const struct context *k, const double *rhs, const double *p,
-                  const double *r, double mean[3]) {
+static void means(const struct context *k, const double *p, const double *r,
+                  double mean[3]) {
   const struct mesh *mesh = k->mesh;
   const double *flux = k->h->work_faces; /* of p */
   double sum[4] = {0};
@@ -78,7 +88,7 @@ static void means(const struct context *k, const double *rhs, const double *p,
     for (int f = 0; f < NFACE; f++) size += fabs(flux[mesh->cell_face[i][f]]);
     sum[0] += mesh_volume(mesh, i) * p[i];
     sum[1] += mesh_volume(mesh, i) * r[i];
-    sum[2] += mesh_volume(mesh, i) * (fabs(rhs[i]) + size / mesh->h[i]);
+    sum[2] += mesh_volume(mesh, i) * (fabs(k->rhs[i]) + size / mesh->h[i]);
     sum[3] += mesh_volume(mesh, i);
   }
   MPI_CHECK(
@@ -97,11 +107,11 @@ static void prepare(void *context) {
 
 /* Solve with p determined up to a constant. */
 static struct solve_stats solve_singular(const struct krylov_system *system,
-                                         const double *rhs, double tolerance,
-                                         int max_iterations, double *p) {
-  const struct context *k = system->context;
+                                         double tolerance, int max_iterations,
+                                         double *p) {
+  struct context *k = system->context;
   double *r = k->h->residual, before[3], after[3];
-  means(k, rhs, p, r, before);
+  means(k, p, r, before);
   const double excess = fabs(before[1]);
   /* 1e-12: round-off of sums over many cells of both signs */
   if (excess > tolerance && excess > 1e-12 * before[2]) {
@@ -109,10 +119,11 @@ static struct solve_stats solve_singular(const struct krylov_system *system,
                                 .residual_after = excess,
                                 .status = SOLVE_INCOMPATIBLE};
   }
-  shift(k->mesh, -before[1], r);
+  k->excess = before[1];
+  shift(k->mesh, -k->excess, r);
   struct solve_stats stats =
       krylov_solve(system, k->h->krylov, tolerance, max_iterations, r, &p);
-  means(k, rhs, p, r, after);
+  means(k, p, r, after);
   shift(k->mesh, before[0] - after[0], p);
   return stats;
 }
@@ -122,7 +133,7 @@ struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
                                  const struct bc *bc, double tolerance,
                                  int max_iterations, double *p) {
   CHECK(h->revision == mesh->revision, "hierarchy of an older mesh");
-  struct context context = {mesh, h, alpha_f, bc};
+  struct context context = {mesh, h, alpha_f, rhs, bc, 0};
   const struct krylov_system system = {.comm = mesh->comm,
                                        .n = mesh->nleaves,
                                        .nparts = 1,
@@ -130,15 +141,14 @@ struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
                                        .prepare = prepare,
                                        .precondition = precondition,
                                        .apply = apply,
+                                       .residual = residual,
                                        .weight = h->weight};
   double *r = h->residual;
-  mesh_fill(mesh, 1, &p, &bc, false);
-  divergence(&context, p, r);
-  for (int32_t i = 0; i < mesh->nleaves; i++) r[i] = rhs[i] - r[i];
+  residual(&context, &p, r);
   struct solve_stats stats =
       has_level(mesh, alpha_f, bc)
           ? krylov_solve(&system, h->krylov, tolerance, max_iterations, r, &p)
-          : solve_singular(&system, rhs, tolerance, max_iterations, p);
+          : solve_singular(&system, tolerance, max_iterations, p);
   mesh_fill(mesh, 1, &p, &bc, false);
   return stats;
 }

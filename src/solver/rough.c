@@ -61,23 +61,10 @@ static void list_marked(struct hierarchy *h, const double *mark) {
   h->rough_begin[h->nlevels * NCHILD] = n;
 }
 
-static double largest(const struct hierarchy *h, const double *density,
-                      const double *r) {
-  const int32_t n = h->mesh->nleaves;
-  double most = 0;
-  for (int c = 0; c < h->nparts; c++) {
-    for (int32_t i = 0; i < n; i++) {
-      const double size = fabs(r[(int64_t)c * n + i]);
-      most = max2(most, density ? size / density[i] : size);
-    }
-  }
-  return mesh_max(h->mesh, most);
-}
-
-void rough_watch(struct hierarchy *h, const double *density, const double *r) {
+void rough_watch(struct hierarchy *h, double residual) {
   if (h->ncycles > 1) return;
   const double before = h->first_residual;
-  h->first_residual = largest(h, density, r);
+  h->first_residual = residual;
   if (h->ncycles == 0 || h->first_residual <= before) return;
   if (!h->rough) {
     h->rough = MEM_NEW(int32_t, h->nowned);

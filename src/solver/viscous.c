@@ -13,6 +13,7 @@ struct context {
   struct hierarchy *h;
   const double *rho, *eta_f;
   double theta_dt;
+  double *const *rhs;
   const struct bc *const *bc;
 };
 
@@ -96,10 +97,10 @@ void viscous_dissipation(const struct mesh *mesh, const double *eta_f,
   for (int e = 0; e < DIM; e++) mem_free(tau[e]);
 }
 
-/* q = rho u - theta dt div(2 eta D(u)), u filled. */
-static void operate(const struct context *k, double *const u[DIM], double *q) {
+/* q = rho u - theta dt div(2 eta D(u)), u filled; q may be u. */
+static void operate(const struct context *k, double *const u[DIM],
+                    double *const q[DIM]) {
   const struct mesh *mesh = k->mesh;
-  const int64_t n = mesh->nleaves;
   double *tau[DIM];
   for (int e = 0; e < DIM; e++) {
     tau[e] = k->h->work_faces + (int64_t)e * mesh->nfaces_all;
@@ -108,28 +109,39 @@ static void operate(const struct context *k, double *const u[DIM], double *q) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double ratio = k->theta_dt / mesh->h[i];
     for (int e = 0; e < DIM; e++) {
-      q[e * n + i] = k->rho[i] * u[e][i] - ratio * divergence(mesh, tau[e], i);
+      q[e][i] = k->rho[i] * u[e][i] - ratio * divergence(mesh, tau[e], i);
     }
   }
 }
 
-static void apply(void *context, const double *z, double *q) {
+static void apply(void *context, float *const z[2], double *q[]) {
   const struct context *k = context;
   const struct mesh *mesh = k->mesh;
-  double *u[DIM];
   for (int e = 0; e < DIM; e++) {
-    u[e] = k->h->work_cells + (int64_t)e * mesh->ncells;
-    memcpy(u[e], z + (int64_t)e * mesh->nleaves,
-           (size_t)mesh->nleaves * sizeof **u);
+    q[e] = k->h->work_cells + (int64_t)e * mesh->ncells;
+    krylov_direction(mesh->nleaves, (int64_t)e * mesh->nleaves, z, q[e]);
   }
-  mesh_fill(mesh, DIM, u, k->bc, true);
-  operate(k, u, q);
+  mesh_fill(mesh, DIM, q, k->bc, true);
+  operate(k, q, q);
 }
 
-static void precondition(void *context, const double *r, double *z) {
+static void residual(void *context, double *const u[], double *r) {
   const struct context *k = context;
-  rough_watch(k->h, k->rho, r);
-  cycle_run(k->h, 1, r, z);
+  const int32_t n = k->mesh->nleaves;
+  double *part[DIM];
+  for (int e = 0; e < DIM; e++) part[e] = r + (int64_t)e * n;
+  mesh_fill(k->mesh, DIM, u, k->bc, false);
+  operate(k, u, part);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < n; i++) part[e][i] = k->rhs[e][i] - part[e][i];
+  }
+}
+
+static void precondition(void *context, const double *r, double size,
+                         float *const z[2]) {
+  const struct context *k = context;
+  rough_watch(k->h, size);
+  cycle_run(k->h, 1 / size, r, z);
 }
 
 static void prepare(void *context) {
@@ -144,21 +156,16 @@ struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
                                  double tolerance, int max_iterations,
                                  double *const u[DIM]) {
   CHECK(h->revision == mesh->revision, "hierarchy of an older mesh");
-  const int32_t n = mesh->nleaves;
-  struct context context = {mesh, h, rho, eta_f, theta_dt, bc};
-  mesh_fill(mesh, DIM, u, bc, false);
-  operate(&context, u, h->residual);
-  for (int e = 0; e < DIM; e++) {
-    double *r = h->residual + (int64_t)e * n;
-    for (int32_t i = 0; i < n; i++) r[i] = rhs[e][i] - r[i];
-  }
+  struct context context = {mesh, h, rho, eta_f, theta_dt, rhs, bc};
+  residual(&context, u, h->residual);
   const struct krylov_system system = {.comm = mesh->comm,
-                                       .n = n,
+                                       .n = mesh->nleaves,
                                        .nparts = DIM,
                                        .context = &context,
                                        .prepare = prepare,
                                        .precondition = precondition,
                                        .apply = apply,
+                                       .residual = residual,
                                        .weight = h->weight,
                                        .density = rho};
   struct solve_stats stats = krylov_solve(&system, h->krylov, tolerance,

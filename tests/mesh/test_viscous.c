@@ -257,6 +257,40 @@ START_TEST(contrast_of_viscosity) {
 }
 END_TEST
 
+/* max |rhs - u + force| of a solve with dt = 1. */
+static double true_residual(struct flow *s) {
+  double *force[DIM], most = 0;
+  for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, s->mesh->nleaves);
+  viscous_force(s->mesh, s->eta_f, s->u, force);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+      most = fmax(most, fabs(s->rhs[d][i] - s->u[d][i] + force[d][i]));
+    }
+    mem_free(force[d]);
+  }
+  return mesh_max(s->mesh, most);
+}
+
+/* Directions of 24 bits must not be seen in the residual. */
+START_TEST(residual_is_what_it_is_said_to_be) {
+  static const double digits[] = {1e-5, 1e-8, 1e-11};
+  contrast = _i < 3 ? 1 : 100;
+  struct flow *s =
+      flow_new(grid_new(MPI_COMM_WORLD, 1, false, 3, 5), disc, BC_DIRICHLET);
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    for (int d = 0; d < DIM; d++) s->rhs[d][i] = sin(5 * s->mesh->x[i][d] + 1);
+  }
+  const double tolerance = digits[_i % 3];
+  const struct solve_stats stats =
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1, s->rhs, s->bc,
+                    tolerance, MOST, s->u);
+  const double residual = true_residual(s);
+  ck_assert_int_eq(stats.status, SOLVE_CONVERGED);
+  ck_assert_double_le(residual, tolerance);
+  flow_destroy(s);
+}
+END_TEST
+
 static double soft_at_floor(const double *x) { return x[1] > 0 ? 1 : 0.2; }
 
 /* Coarse levels must not take the softness of the floor's faces for that of
@@ -344,6 +378,7 @@ Suite *viscous_suite(void) {
   tcase_add_loop_test(t, dissipation_is_the_work_of_the_force, 0, 2);
   tcase_add_loop_test(t, manufactured_solution_is_second_order, 0, 2);
   tcase_add_loop_test(t, contrast_of_viscosity, 0, 10);
+  tcase_add_loop_test(t, residual_is_what_it_is_said_to_be, 0, 6);
   tcase_add_test(t, soft_wall_costs_no_iterations);
   tcase_add_loop_test(t, solution_does_not_depend_on_ranks, 0, 4);
   tcase_add_test(t, robin_walls_slip);
