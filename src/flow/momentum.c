@@ -34,8 +34,8 @@ static void limited_slopes(const struct mesh *mesh, int d, const double *c,
   const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t *node = mesh->stencil[i];
-    if (max2(band[i], max2(band[node[lower]], band[node[upper]])) <= 0)
-      continue;
+    const double near = max2(band[node[lower]], band[node[upper]]);
+    if (band[i] <= 0 && near <= 0) continue;
     const bool cut = vof_is_cut(c[i]);
     for (int e = 0; e < DIM; e++) {
       const double left = u[e][i] - u[e][node[lower]];

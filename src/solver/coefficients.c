@@ -33,8 +33,9 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
     const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
     const double ratio =
         factor * mesh_volume(mesh, i) / (mesh->h[i] * mesh->h[i]);
-    for (int f = 0; f < NFACE; f++)
+    for (int f = 0; f < NFACE; f++) {
       h->w[f][s] = (float)(ratio * alpha_f[face[f]]);
+    }
     mass[s] = mass_density ? mass_density[i] * mesh_volume(mesh, i) : 0;
   }
 }
