@@ -16,12 +16,12 @@
  * uncoupled, a stiff body is kept from rotating.
  *
  * Iterations from zero to 1e-8 of the first residual, no-slip unit box with
- * a disc of radius 1/4 (2D, levels 5 to 9; 2 to 12 more if the levels jump
+ * a disc of radius 1/4 (2D, levels 5 to 9; 2 to 10 more if the levels jump
  * around the disc), eta_disc / eta_around across and rho h^2 / (eta_soft dt)
  * down:
  *              1e8     1e4      1     1e-4    1e-8
- *   1        14-17   10-11    6      9-10   11-13
- *   1e-4     13-24   10-17   8-9     9-13   12-17
+ *   1        12-17   10-11   5-6     7-9    10-13
+ *   1e-4     14-20   11-17   7-8     8-12   10-15
  */
 #ifndef TALUS_VISCOUS_H
 #define TALUS_VISCOUS_H
