@@ -14,8 +14,7 @@
  * of contrast 1e6 do not converge). The test is on max |r_i / rho_i|; a guess
  * must pass it a million times better to need no iteration. Where an iteration
  * gains little, r is made orthogonal to all q_j again: what rounding leaves of
- * it there is out of reach of new directions. (Forgetting the directions
- * instead: 36 iterations for 29 with stiff discs of contrast 1e8.)
+ * it there is out of reach of new directions.
  *
  * z and q are stored as floats, all else is double. z is rounded before A is
  * applied, so that it is exact; made orthogonal like q it would not be, and

@@ -22,8 +22,8 @@
 #include "talus/mesh.h"
 
 /* band [ncells] = 1 for leaves with anything but one pure phase in their
- * stencil, else 0; filled, so that the nodes over band leaves and in them
- * have something, > 0. c filled. Collective. */
+ * stencil, else 0; filled, helper nodes made from a band leaf being > 0. c
+ * filled. Collective. */
 void momentum_mark_band(const struct mesh *mesh, const double *c, double *band);
 /* Does the face carry momentum in the sweeps? */
 static inline bool momentum_face_in_band(const struct mesh *mesh,

@@ -15,8 +15,9 @@ static void apply(const struct hierarchy *h, int c, const double *p,
     double sum = inverse[i] > 0 ? p[i] / inverse[i] : 0;
     for (int f = 0; f < NFACE; f++) {
       const int twice = h->nparts > 1 && c == f >> 1 ? 2 : 1;
-      if (h->w[f][i] > 0)
+      if (h->w[f][i] > 0) {
         sum -= twice * (double)h->w[f][i] * p[h->neighbour[f][i]];
+      }
     }
     q[i] = sum;
   }

@@ -9,7 +9,8 @@
 #include "talus/memory.h"
 #include "talus/minmax.h"
 
-/* Beyond this factor what is inside is a body's edge, not a gradient. */
+/* Beyond this factor what is inside is the edge of a body, not a gradient: to
+ * reach into that would make the levels too stiff. 1000 does as well. */
 #define WALL_JUMP 100
 
 /* Conductance of a wall over that between two cells. */

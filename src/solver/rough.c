@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Nodes near jumps of the coefficient, which cycles relax more often than the
- * rest once the first one has shown the need: it raises max |t r| where coarse
- * levels misplace the jump, by alpha / h^2 times an error at it. */
+ * rest once the first one has shown the need: it raises max |r/rho| where
+ * coarse levels misplace the jump, by alpha / h^2 times an error at it. */
 #include <math.h>
 #include <string.h>
 

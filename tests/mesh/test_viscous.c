@@ -293,21 +293,25 @@ END_TEST
 
 static double soft_at_floor(const double *x) { return x[1] > 0 ? 1 : 0.2; }
 
-/* Coarse levels must not take the softness of the floor's faces for that of
- * the cells on it: 13 iterations then in 2D, 10 in 3D. */
-START_TEST(soft_wall_costs_no_iterations) {
+static int floor_iterations(double (*eta)(const double *x)) {
   const int level = DIM == 2 ? 6 : 5;
   struct flow *s = flow_new(grid_new(MPI_COMM_WORLD, 1, false, level, level),
-                            soft_at_floor, BC_DIRICHLET);
+                            eta, BC_DIRICHLET);
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     s->rhs[1][i] = sin(7 * s->mesh->x[i][0]) * cos(5 * s->mesh->x[i][1]);
   }
   const struct solve_stats stats =
       viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1e4, s->rhs, s->bc,
                     1e-8, MOST, s->u);
-  ck_assert_int_eq(stats.status, SOLVE_CONVERGED);
-  ck_assert_int_le(stats.iterations, 8);
   flow_destroy(s);
+  return stats.status == SOLVE_CONVERGED ? stats.iterations : MOST;
+}
+
+/* Coarse levels must not take the softness of the floor's faces for that of
+ * the cells on it: no more than a cycle is lost by it. */
+START_TEST(soft_wall_costs_no_iterations) {
+  const int even = floor_iterations(one);
+  ck_assert_int_le(floor_iterations(soft_at_floor), even + 1);
 }
 END_TEST
 
