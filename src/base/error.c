@@ -49,10 +49,21 @@ static void report_leaks(void) {
 #endif
 }
 
-void base_begin(int *argc, char ***argv) {
-  /* Started without a launcher, Open MPI forks a daemon to spawn further
-   * processes from unless told that nobody will ask for them. */
+/* Started without a launcher, Open MPI forks a daemon to spawn further
+ * processes from, and waits 0.2 s for networks to answer, unless told that
+ * nobody will ask for either. What the user has set stands. */
+static void expect_no_others(void) {
+  static const char *const launcher[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK",
+                                         "PMI_RANK", "SLURM_PROCID"};
+  for (size_t k = 0; k < sizeof launcher / sizeof *launcher; k++) {
+    if (getenv(launcher[k])) return;
+  }
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  setenv("OMPI_MCA_pml", "ob1", 0);
+}
+
+void base_begin(int *argc, char ***argv) {
+  expect_no_others();
   mem_begin();
   if (MPI_Init(argc, argv) != MPI_SUCCESS) FATAL("MPI does not start");
   MPI_CHECK(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN));
