@@ -15,6 +15,7 @@
 #include "talus/diagnostics.h"
 #include "talus/error.h"
 #include "talus/forest.h"
+#include "talus/fractions.h"
 #include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/mesh.h"
@@ -161,9 +162,9 @@ static void write_tables(struct run *run) {
   bool outline = outline_due(run);
   if (!row && !outline) return;
   struct diagnostics d;
-  step_synchronise(sim);
+  fractions_synchronise(sim);
   diagnostics_measure(sim, &d);
-  step_desynchronise(sim);
+  fractions_desynchronise(sim);
   sim->energy.kinetic = d.kinetic;
   sim->energy.potential = d.potential;
   if (sim->step == 0) {

@@ -74,6 +74,13 @@ void fields_destroy(struct fields *fields);
  * and set them back to it. The mesh must not change in between. */
 void fields_save(struct fields *fields, const struct mesh *mesh);
 void fields_restore(struct fields *fields, const struct mesh *mesh);
+void field_restore(struct field *field, const struct mesh *mesh);
+
+/* The arrays of a vector's components. */
+static inline void field_arrays(struct field *const field[DIM],
+                                double *v[DIM]) {
+  for (int d = 0; d < DIM; d++) v[d] = field[d]->v;
+}
 
 /* mesh_fill for fields with their own boundary conditions. Collective. */
 void field_fill(const struct mesh *mesh, struct field *field);

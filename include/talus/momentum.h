@@ -22,9 +22,12 @@
 #include "talus/mesh.h"
 
 /* band [ncells] = 1 for leaves with anything but one pure phase in their
- * stencil, else 0; filled, helper nodes made from a band leaf being > 0. c
- * filled. Collective. */
-void momentum_mark_band(const struct mesh *mesh, const double *c, double *band);
+ * stencil, and for rings - 1 layers of leaves around them, else 0; filled,
+ * helper nodes made from a band leaf being > 0. The interface may cross a ring
+ * in the sweeps along all axes, each of less than a cell. c filled.
+ * Collective. */
+void momentum_mark_band(const struct mesh *mesh, const double *c, int rings,
+                        double *band);
 /* Does the face carry momentum in the sweeps? */
 static inline bool momentum_face_in_band(const struct mesh *mesh,
                                          const double *band, int32_t face) {

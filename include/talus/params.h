@@ -116,7 +116,7 @@ struct params {
   double pressure_level;     /* mean pressure over the box */
 
   /* Numerics */
-  double cfl;                /* 1/2 sum |u_f| A dt / V, in (0, 1/2] */
+  double cfl;                /* 1/2 sum |u_f| A dt / V, in (0, 1] */
   double dt_max;             /* user cap, > 0 */
   double tolerance_pressure; /* max |div u| dt */
   double tolerance_viscous;  /* max |dt r / rho| / velocity scale */

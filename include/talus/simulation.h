@@ -109,6 +109,8 @@ void simulation_destroy(struct simulation *sim);
 struct forest_layout;
 void simulation_layout(const struct params *params,
                        struct forest_layout *layout);
+/* Of grains and gas, which without an interface is the same. */
+void simulation_densities(const struct simulation *sim, double density[2]);
 /* Make mesh, hierarchy and cleaning tree anew from the forest; the fields
  * are reset to zero. Collective. */
 void simulation_remesh(struct simulation *sim);

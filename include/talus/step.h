@@ -34,13 +34,6 @@ struct simulation;
  * that before the step. Collective. */
 int step_advance(struct simulation *sim, double dt_max);
 
-/* c lags half a step behind `time`. The first call takes it to `time` with
- * the present velocity, so that it can be measured; the second sets back what
- * it was, to the last bit, from sim->cell[2 DIM - 1]. Nothing else of the state
- * changes. Collective. */
-void step_synchronise(struct simulation *sim);
-void step_desynchronise(struct simulation *sim);
-
 /* Complete the state at t = 0 from c, u and a first u_f: u_f is projected,
  * p and g are those of the grains at rest (no viscosity), to round-off.
  * Collective. */

@@ -9,7 +9,8 @@
  * leaf fills, cc = 1 where c > 1/2 before the first sweep, else 0. After all
  * axes the cc terms add up to cc dt div(u), zero to round-off when u_f has
  * been cleaned (clean.h): volume is kept without clipping. c stays in [0, 1]
- * for 1/2 sum |u_f| A dt / V <= 1/2.
+ * for 1/2 sum |u_f| A dt / V <= 1/2; beyond, it leaves it where the flow along
+ * one axis is compressed much within a cell, which vof_excess tells.
  *
  * c lives in cells; normals and alpha in leaves and ghosts, in units of the
  * leaf (plane.h); F on faces, m/s.
@@ -23,6 +24,8 @@
 
 /* A leaf is cut by the interface when c lies strictly between these. */
 #define VOF_EMPTY 1e-12
+/* Up to this 1/2 sum |u_f| A dt / V a sweep keeps c in [0, 1]. */
+#define VOF_CFL 0.5
 static inline bool vof_is_cut(double c) {
   return c > VOF_EMPTY && c < 1 - VOF_EMPTY;
 }
@@ -52,5 +55,8 @@ void vof_freeze(const struct mesh *mesh, const double *c, double *cc);
 /* The update of the sweep along d. c [nleaves] in/out. */
 void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
                 const double *flux, const double *cc, double *c);
+
+/* How far c lies out of [0, 1] in the leaves of this rank. */
+double vof_excess(const struct mesh *mesh, const double *c);
 
 #endif

@@ -368,3 +368,9 @@ struct simulation *simulation_new(const struct params *params) {
   step_start(sim);
   return sim;
 }
+
+void simulation_densities(const struct simulation *sim, double density[2]) {
+  density[0] = sim->params->grains.density;
+  density[1] =
+      sim->params->single_phase ? density[0] : sim->params->gas.density;
+}

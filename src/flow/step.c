@@ -19,9 +19,9 @@
 #include "talus/advection.h"
 #include "talus/clean.h"
 #include "talus/error.h"
+#include "talus/fractions.h"
 #include "talus/log.h"
 #include "talus/minmax.h"
-#include "talus/momentum.h"
 #include "talus/projection.h"
 #include "talus/properties.h"
 #include "talus/side_walls.h"
@@ -35,23 +35,9 @@
 #define STALL_SLACK 10
 #define STALL_FLOOR 1e-10
 
-/* The scratch cell field that keeps c during a sweep, or while it is
- * synchronised. */
-enum { C_OLD = 2 * DIM - 1 };
-
 /* A step that fails is repeated so often, each time with this part of dt. */
 enum { RETRIES = 3 };
 #define RETRY_FACTOR 0.25
-
-static void velocities(struct field *const field[DIM], double *v[DIM]) {
-  for (int d = 0; d < DIM; d++) v[d] = field[d]->v;
-}
-
-static void densities(const struct simulation *sim, double density[2]) {
-  density[0] = sim->params->grains.density;
-  density[1] =
-      sim->params->single_phase ? density[0] : sim->params->gas.density;
-}
 
 static struct projection projection_of(struct simulation *sim) {
   return (struct projection){.mesh = sim->mesh,
@@ -64,100 +50,6 @@ static struct projection projection_of(struct simulation *sim) {
                              .max_iterations = sim->params->max_iterations,
                              .rhs = sim->cell[0]->v,
                              .flux = sim->face[0]->v};
-}
-
-/* Make the planes of c those of what it is now. c is filled. */
-static void update_planes(struct simulation *sim) {
-  double *normal[DIM];
-  if (sim->planes_hold) return;
-  velocities(sim->normal, normal);
-  vof_reconstruct(sim->mesh, sim->c->v, normal, sim->plane->v);
-  sim->planes_hold = true;
-}
-
-/* Stage 3: c, tracers and the momentum near the interface, axis by axis, in
- * an order that alternates from step to step. The tracer (or c) is filled,
- * normal and plane are its own. */
-static void sweep_tracer(struct simulation *sim, int d, double dt,
-                         double *const normal[DIM], const double *plane,
-                         double *tracer) {
-  const struct mesh *mesh = sim->mesh;
-  const double *u_f = sim->u_f->v;
-  double *flux = sim->face[0]->v;
-  vof_flux(mesh, d, dt, u_f, sim->open, tracer, normal, plane, flux);
-  vof_update(mesh, d, dt, u_f, flux, sim->frozen->v, tracer);
-}
-
-/* The planes of c are left as they are, for it may be set back. */
-static void advance_tracer(struct simulation *sim, double dt,
-                           struct field *tracer) {
-  bool held = tracer == sim->c && sim->planes_hold;
-  vof_freeze(sim->mesh, tracer->v, sim->frozen->v);
-  for (int s = 0; s < DIM; s++, held = false) {
-    const int d = (int)((sim->step + s) % DIM);
-    double *normal[DIM], *plane = (held ? sim->plane : sim->cell[DIM])->v;
-    velocities(held ? sim->normal : sim->cell, normal);
-    field_fill(sim->mesh, tracer);
-    if (!held) vof_reconstruct(sim->mesh, tracer->v, normal, plane);
-    sweep_tracer(sim, d, dt, normal, plane, tracer->v);
-  }
-}
-
-/* u and c are filled. */
-static void sweep_grains(struct simulation *sim, int d, double dt) {
-  const struct mesh *mesh = sim->mesh;
-  double density[2], *u[DIM], *start[DIM], *normal[DIM];
-  double *c_old = sim->cell[C_OLD]->v;
-  struct momentum_flux flux = {.mass = sim->u_half->v};
-  densities(sim, density);
-  velocities(sim->u, u), velocities(sim->u_old, start);
-  velocities(sim->normal, normal);
-  for (int e = 0; e < DIM; e++) {
-    flux.carried[e] = sim->face[1 + e]->v;
-    flux.slope[e] = sim->cell[e]->v;
-  }
-  memcpy(c_old, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
-  update_planes(sim);
-  sweep_tracer(sim, d, dt, normal, sim->plane->v, sim->c->v);
-  sim->planes_hold = false;
-  momentum_flux(mesh, d, dt, density, sim->u_f->v, c_old, sim->face[0]->v,
-                sim->band->v, u, &flux);
-  momentum_update(mesh, d, dt, density, sim->u_f->v, c_old, sim->frozen->v,
-                  sim->band->v, start, &flux, u);
-}
-
-static void log_divergence(struct simulation *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
-  double sum = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double net = 0;
-    for (int f = 0; f < NFACE; f++) {
-      net += (f & 1 ? 1 : -1) * sim->u_f->v[mesh->cell_face[i][f]];
-    }
-    sum += sim->frozen->v[i] * net * dt * mesh_volume(mesh, i) / mesh->h[i];
-  }
-  sim->divergence_volume += mesh_sum(mesh, sum);
-}
-
-static void advance_fractions(struct simulation *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
-  field_fill_many(mesh, DIM, sim->u);
-  for (int e = 0; e < DIM; e++) {
-    memcpy(sim->u_old[e]->v, sim->u[e]->v,
-           (size_t)mesh->ncells * sizeof(double));
-  }
-  for (int k = 0; k < sim->params->ntracers; k++) {
-    advance_tracer(sim, dt, sim->tracer[k]);
-  }
-  if (sim->params->single_phase) return;
-  field_fill(mesh, sim->c);
-  momentum_mark_band(mesh, sim->c->v, sim->band->v);
-  vof_freeze(mesh, sim->c->v, sim->frozen->v);
-  for (int s = 0; s < DIM; s++) {
-    if (s > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
-    sweep_grains(sim, (int)((sim->step + s) % DIM), dt);
-  }
-  log_divergence(sim, dt);
 }
 
 /* Stage 4: density, gravity and viscosity from c^{n+1/2}, D^n, p^{n-1/2}. */
@@ -181,10 +73,10 @@ static void update_density(struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
   const struct balance balance = balance_of(sim);
   double density[2], *normal[DIM];
-  densities(sim, density);
-  velocities(sim->normal, normal);
+  simulation_densities(sim, density);
+  field_arrays(sim->normal, normal);
   field_fill(mesh, sim->c);
-  update_planes(sim);
+  fractions_update_planes(sim);
   properties_density(mesh, density, sim->c->v, sim->closed, sim->rho->v,
                      sim->alpha_f->v);
   field_fill(mesh, sim->rho);
@@ -214,7 +106,7 @@ static void update_viscosity(struct simulation *sim,
   const struct mesh *mesh = sim->mesh;
   const struct params *params = sim->params;
   double *u[DIM], *normal[DIM];
-  velocities(velocity, u), velocities(sim->normal, normal);
+  field_arrays(velocity, u), field_arrays(sim->normal, normal);
   field_fill(mesh, sim->p);
   properties_shear_rate(mesh, u, sim->face[0]->v);
   double *work[2] = {sim->face[1]->v, sim->face[2]->v};
@@ -248,7 +140,7 @@ static void predictor_acceleration(struct simulation *sim, double *g[DIM]) {
   const bool viscous = sim->params->theta < 1;
   const double *drag = sim->drag ? sim->drag->v : NULL;
   struct field *const *sum = viscous ? &sim->cell[2 * DIM] : sim->g;
-  velocities(sum, g);
+  field_arrays(sum, g);
   for (int e = 0; e < DIM && viscous; e++) {
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
       const double u = sim->u_old[e]->v[i];
@@ -264,7 +156,7 @@ static void predictor_acceleration(struct simulation *sim, double *g[DIM]) {
 static void advect_momentum(struct simulation *sim, double dt) {
   const struct mesh *mesh = sim->mesh;
   double *u[DIM], *g[DIM], *out[DIM];
-  velocities(sim->u_old, u), velocities(sim->u, out);
+  field_arrays(sim->u_old, u), field_arrays(sim->u, out);
   struct advection_work work = {.limiter = sim->params->limiter,
                                 .volume = sim->face[0]->v};
   for (int e = 0; e < DIM; e++) {
@@ -289,7 +181,7 @@ static void viscous_rhs(struct simulation *sim, double dt,
   const double theta = sim->params->theta;
   if (theta < 1) {
     double *u[DIM];
-    velocities(sim->u_old, u);
+    field_arrays(sim->u_old, u);
     viscous_force(mesh, sim->eta_f->v, u, rhs);
   }
   for (int e = 0; e < DIM; e++) {
@@ -347,7 +239,7 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
   const struct params *params = sim->params;
   double *u[DIM], *rhs[DIM];
   const struct bc *bc[DIM];
-  velocities(sim->u, u);
+  field_arrays(sim->u, u);
   const double *rho = sim->rho->v;
   const double *mass = sim->drag ? mass_with_walls(sim, dt) : rho;
   for (int e = 0; e < DIM; e++) {
@@ -424,7 +316,7 @@ static void add_solve(struct solve_stats *last,
 static void add_wall_work(struct simulation *sim, double dt) {
   double *u[DIM];
   if (!sim->drag) return;
-  velocities(sim->u, u);
+  field_arrays(sim->u, u);
   sim->energy.dissipated += dt * side_walls_power(sim->mesh, sim->drag->v, u);
 }
 
@@ -463,7 +355,7 @@ static void project(struct simulation *sim, double dt, int k) {
   struct projection projection = projection_of(sim);
   double *u[DIM], *g[DIM];
   turn_face_velocity(sim, k);
-  velocities(sim->u, u), velocities(sim->g, g);
+  field_arrays(sim->u, u), field_arrays(sim->g, g);
   field_fill_many(mesh, DIM, sim->u);
   projection_face_velocity(&projection, dt, u, sim->u_f->v);
   sim->pressure = projection_project(&projection, dt, sim->u_f->v, sim->p->v);
@@ -559,7 +451,7 @@ static void lap(struct simulation *sim, enum step_stage stage) {
 
 /* Stages 3 to 8: the state at `time` + dt. */
 static void advance_state(struct simulation *sim, double dt, double dt_c) {
-  advance_fractions(sim, dt_c), lap(sim, STAGE_FRACTION);
+  fractions_advance(sim, dt_c), lap(sim, STAGE_FRACTION);
   update_density(sim), lap(sim, STAGE_DENSITY);
   update_viscosity(sim, sim->u_old);
   add_dissipation(sim, dt), lap(sim, STAGE_RHEOLOGY);
@@ -605,23 +497,11 @@ int step_advance(struct simulation *sim, double dt_max) {
   return EXIT_DONE;
 }
 
-void step_synchronise(struct simulation *sim) {
-  memcpy(sim->cell[C_OLD]->v, sim->c->v,
-         (size_t)sim->mesh->nleaves * sizeof(double));
-  if (sim->params->single_phase || sim->dt == 0) return;
-  advance_tracer(sim, 0.5 * sim->dt, sim->c);
-}
-
-void step_desynchronise(struct simulation *sim) {
-  memcpy(sim->c->v, sim->cell[C_OLD]->v,
-         (size_t)sim->mesh->nleaves * sizeof(double));
-}
-
 /* Pressure and acceleration of the state at rest, without viscosity. */
 static struct solve_stats static_pressure(struct simulation *sim) {
   struct projection projection = projection_of(sim);
   double *rest[DIM], *g[DIM], size = 0;
-  velocities(sim->u_old, rest), velocities(sim->g, g);
+  field_arrays(sim->u_old, rest), field_arrays(sim->g, g);
   for (int d = 0; d < DIM; d++) {
     memset(rest[d], 0, (size_t)sim->mesh->ncells * sizeof(double));
     size = max2(size, fabs(sim->params->gravity[d]));

@@ -97,3 +97,11 @@ void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
             (flux[upper] - flux[lower] - cc[i] * (u_f[upper] - u_f[lower]));
   }
 }
+
+double vof_excess(const struct mesh *mesh, const double *c) {
+  double excess = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    excess = max2(excess, max2(c[i] - 1, -c[i]));
+  }
+  return excess;
+}

@@ -73,14 +73,16 @@ void fields_save(struct fields *fields, const struct mesh *mesh) {
   }
 }
 
+void field_restore(struct field *field, const struct mesh *mesh) {
+  const double *before = field->old ? field->old->v : field->saved;
+  CHECK(before, "field '%s' was not saved", field->name);
+  if (before == field->v) return;
+  memcpy(field->v, before, saved_length(field, mesh) * sizeof(double));
+}
+
 void fields_restore(struct fields *fields, const struct mesh *mesh) {
   for (int k = 0; k < fields->n; k++) {
-    struct field *field = fields->field[k];
-    if (!field->restart) continue;
-    const double *before = field->old ? field->old->v : field->saved;
-    CHECK(before, "field '%s' was not saved", field->name);
-    if (before == field->v) continue;
-    memcpy(field->v, before, saved_length(field, mesh) * sizeof(double));
+    if (fields->field[k]->restart) field_restore(fields->field[k], mesh);
   }
 }
 

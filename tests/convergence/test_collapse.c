@@ -16,6 +16,7 @@
 #include "report.h"
 #include "runs.h"
 #include "talus/diagnostics.h"
+#include "talus/fractions.h"
 
 enum { FIRST = 8, LAST = 11, LEVELS = LAST - FIRST + 1, MOST_STEPS = 8192 };
 static const double kAspect = 1.42;
@@ -60,9 +61,9 @@ static void run_collapse(int level, double box, const char *more,
     }
     advance_heap(sim, dt_max, heap);
   }
-  step_synchronise(sim); /* c to the time of u */
+  fractions_synchronise(sim); /* c to the time of u */
   diagnostics_measure(sim, &heap->at_end);
-  step_desynchronise(sim);
+  fractions_desynchronise(sim);
   example_destroy(&example);
 }
 

@@ -16,6 +16,7 @@
 #include "report.h"
 #include "runs.h"
 #include "talus/diagnostics.h"
+#include "talus/fractions.h"
 
 static const double kAspect = 1.42;
 
@@ -25,9 +26,9 @@ static double ratio_of(double a, double b) { return a / b - 1; }
 static bool measure_at(struct example *example, double time,
                        struct diagnostics *d) {
   const bool good = run_to(example->sim, time);
-  step_synchronise(example->sim);
+  fractions_synchronise(example->sim);
   diagnostics_measure(example->sim, d);
-  step_desynchronise(example->sim);
+  fractions_desynchronise(example->sim);
   return good;
 }
 

@@ -57,11 +57,6 @@ static inline void bench_vector(struct bench *b, const char *const names[],
   for (int d = 0; d < DIM; d++) out[d] = bench_cell(b, names[d]);
 }
 
-static inline void field_arrays(struct field *const field[DIM],
-                                double *v[DIM]) {
-  for (int d = 0; d < DIM; d++) v[d] = field[d]->v;
-}
-
 /* Volume fractions of a level set, its surface found to 1/8 of a leaf. */
 static inline void fill_shape(const struct mesh *mesh, shape_level_set f,
                               void *context, double *v) {

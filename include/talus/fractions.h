@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Volume fractions of a simulation in time: c, its tracers, and the momentum
+ * that rides with c near the interface (vof.h, momentum.h).
+ *
+ * A step up to the bound of Weymouth & Yue, 1/2 sum |u_f| A dt / V <= 1/2,
+ * keeps all fractions in [0, 1]. A longer one nearly always does so too, for
+ * only flow compressed along one axis, by as much as the excess, within a cell
+ * that is about half full can overfill it. So it is taken whole first; should
+ * a fraction come out of [0, 1], its sweeps are repeated in parts that keep to
+ * the bound, all with the velocity u_f of the step. In the collapse of
+ * examples/column.lua at level 10, with the default solver.cfl of 0.7, one
+ * step in 13 is.
+ */
+#ifndef TALUS_FRACTIONS_H
+#define TALUS_FRACTIONS_H
+
+struct simulation;
+
+/* c and tracers over dt, and u where c's sweeps carry it; u_old and its helper
+ * nodes keep what u was. fields_save has been called since u, c or tracers
+ * changed. Collective. */
+void fractions_advance(struct simulation *sim, double dt);
+
+/* Make the planes of c those of what it is now. c is filled. Collective. */
+void fractions_update_planes(struct simulation *sim);
+
+/* c lags half a step behind `time`. The first call takes it to `time` with
+ * the present velocity, so that it can be measured; the second sets back what
+ * it was, to the last bit, from sim->cell[2 DIM - 1]. Nothing else of the state
+ * changes. Collective. */
+void fractions_synchronise(struct simulation *sim);
+void fractions_desynchronise(struct simulation *sim);
+
+#endif

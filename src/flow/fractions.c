@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/fractions.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/minmax.h"
+#include "talus/momentum.h"
+#include "talus/simulation.h"
+#include "talus/vof.h"
+
+/* The scratch cell field that keeps c during a sweep, or while it is
+ * synchronised. */
+enum { C_OLD = 2 * DIM - 1 };
+
+void fractions_update_planes(struct simulation *sim) {
+  double *normal[DIM];
+  if (sim->planes_hold) return;
+  field_arrays(sim->normal, normal);
+  vof_reconstruct(sim->mesh, sim->c->v, normal, sim->plane->v);
+  sim->planes_hold = true;
+}
+
+/* The tracer (or c) is filled, normal and plane are its own. */
+static void sweep_tracer(struct simulation *sim, int d, double dt,
+                         double *const normal[DIM], const double *plane,
+                         double *tracer) {
+  const struct mesh *mesh = sim->mesh;
+  const double *u_f = sim->u_f->v;
+  double *flux = sim->face[0]->v;
+  vof_flux(mesh, d, dt, u_f, sim->open, tracer, normal, plane, flux);
+  vof_update(mesh, d, dt, u_f, flux, sim->frozen->v, tracer);
+}
+
+/* The planes of c are left as they are, for it may be set back. */
+static void advance_tracer(struct simulation *sim, double dt,
+                           struct field *tracer) {
+  bool held = tracer == sim->c && sim->planes_hold;
+  vof_freeze(sim->mesh, tracer->v, sim->frozen->v);
+  for (int s = 0; s < DIM; s++, held = false) {
+    const int d = (int)((sim->step + s) % DIM);
+    double *normal[DIM], *plane = (held ? sim->plane : sim->cell[DIM])->v;
+    field_arrays(held ? sim->normal : sim->cell, normal);
+    field_fill(sim->mesh, tracer);
+    if (!held) vof_reconstruct(sim->mesh, tracer->v, normal, plane);
+    sweep_tracer(sim, d, dt, normal, plane, tracer->v);
+  }
+}
+
+/* u and c are filled. */
+static void sweep_grains(struct simulation *sim, int d, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double density[2], *u[DIM], *start[DIM], *normal[DIM];
+  double *c_old = sim->cell[C_OLD]->v;
+  struct momentum_flux flux = {.mass = sim->u_half->v};
+  simulation_densities(sim, density);
+  field_arrays(sim->u, u), field_arrays(sim->u_old, start);
+  field_arrays(sim->normal, normal);
+  for (int e = 0; e < DIM; e++) {
+    flux.carried[e] = sim->face[1 + e]->v;
+    flux.slope[e] = sim->cell[e]->v;
+  }
+  memcpy(c_old, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  fractions_update_planes(sim);
+  sweep_tracer(sim, d, dt, normal, sim->plane->v, sim->c->v);
+  sim->planes_hold = false;
+  momentum_flux(mesh, d, dt, density, sim->u_f->v, c_old, sim->face[0]->v,
+                sim->band->v, u, &flux);
+  momentum_update(mesh, d, dt, density, sim->u_f->v, c_old, sim->frozen->v,
+                  sim->band->v, start, &flux, u);
+}
+
+static void log_divergence(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double sum = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double net = 0;
+    for (int f = 0; f < NFACE; f++) {
+      net += (f & 1 ? 1 : -1) * sim->u_f->v[mesh->cell_face[i][f]];
+    }
+    sum += sim->frozen->v[i] * net * dt * mesh_volume(mesh, i) / mesh->h[i];
+  }
+  sim->divergence_volume += mesh_sum(mesh, sum);
+}
+
+/* Axis by axis, in an order that alternates from step to step. u, c
+ * and band are filled. */
+static void sweep_fractions(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    advance_tracer(sim, dt, sim->tracer[k]);
+  }
+  if (sim->params->single_phase) return;
+  vof_freeze(mesh, sim->c->v, sim->frozen->v);
+  for (int s = 0; s < DIM; s++) {
+    if (s > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
+    sweep_grains(sim, (int)((sim->step + s) % DIM), dt);
+  }
+  log_divergence(sim, dt);
+}
+
+static void mark_band(struct simulation *sim, int rings) {
+  if (sim->params->single_phase) return;
+  field_fill(sim->mesh, sim->c);
+  momentum_mark_band(sim->mesh, sim->c->v, rings, sim->band->v);
+}
+
+static bool are_bounded(const struct simulation *sim) {
+  double excess = vof_excess(sim->mesh, sim->c->v);
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    excess = max2(excess, vof_excess(sim->mesh, sim->tracer[k]->v));
+  }
+  return mesh_max(sim->mesh, excess) <= VOF_EMPTY;
+}
+
+/* What the sweeps have changed. */
+static void restore(struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  field_restore(sim->c, mesh);
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    field_restore(sim->tracer[k], mesh);
+  }
+  for (int e = 0; e < DIM; e++) {
+    memcpy(sim->u[e]->v, sim->u_old[e]->v,
+           (size_t)mesh->ncells * sizeof(double));
+  }
+  sim->planes_hold = false;
+}
+
+void fractions_advance(struct simulation *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  const double divergence = sim->divergence_volume;
+  const int parts = (int)ceil(sim->params->cfl / VOF_CFL);
+  field_fill_many(mesh, DIM, sim->u);
+  for (int e = 0; e < DIM; e++) {
+    memcpy(sim->u_old[e]->v, sim->u[e]->v,
+           (size_t)mesh->ncells * sizeof(double));
+  }
+  mark_band(sim, 1);
+  sweep_fractions(sim, dt);
+  if (parts == 1 || are_bounded(sim)) return;
+  restore(sim);
+  sim->divergence_volume = divergence;
+  mark_band(sim, parts);
+  for (int k = 0; k < parts; k++) {
+    if (k > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
+    sweep_fractions(sim, dt / parts);
+  }
+}
+
+void fractions_synchronise(struct simulation *sim) {
+  memcpy(sim->cell[C_OLD]->v, sim->c->v,
+         (size_t)sim->mesh->nleaves * sizeof(double));
+  if (sim->params->single_phase || sim->dt == 0) return;
+  advance_tracer(sim, 0.5 * sim->dt, sim->c);
+}
+
+void fractions_desynchronise(struct simulation *sim) {
+  memcpy(sim->c->v, sim->cell[C_OLD]->v,
+         (size_t)sim->mesh->nleaves * sizeof(double));
+}
