@@ -30,8 +30,8 @@
 -- a continuum: validity of a two-dimensional Navier-Stokes model with a
 -- mu(I)-rheology, J. Fluid Mech. 686 (2011) 378, section 3.2 and figure 10.
 --
--- Cost. Level 10 (32 cells to L0, about 9,000 cells): three and a half seconds
--- on one core. Level 9: one second; level 8: a fraction of one.
+-- Cost. Level 10 (32 cells to L0, about 9,000 cells): three seconds
+-- on one core. Level 9: less than one; level 8: a fraction of one.
 --
 -- Expect. The column falls and spreads. At 2.28 sqrt(H0/g) the front is between
 -- 8.8 and 10.1 L0 and still advances (discrete grains: 9.7, Gerris: 8.95), the
@@ -57,6 +57,7 @@ local slip = param("slip", 0, "slip length of the floor, in L0; 0: rough")
 local rho_gas = param("rho_gas", 1e-3, "density of the gas, in rho")
 local shift = param("shift", 0, "cells by which the side misses a face")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
+local cfl = param("cfl", 0.7, "bound on sum |u_f| A dt/(2 V), the time step")
 local times = param("times", {0.66, 0.95, 1.24, 1.52, 2.28},
                     "times of the outlines, in sqrt(H0/g)")
 param("reference", a == 6.26 and "reference/contact_dynamics_a6.26.csv" or "",
@@ -104,7 +105,7 @@ return {
   },
 
   adapt = { { "interface", width = 3 }, { "inside" } },
-  solver = { tolerance = tolerance },
+  solver = { tolerance = tolerance, cfl = cfl },
   output = { stop = stop, profile_times = profile_times, snapshot_every = 0.1 },
 
   expect = {

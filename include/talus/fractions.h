@@ -7,9 +7,7 @@
  * only flow compressed along one axis, by as much as the excess, within a cell
  * that is about half full can overfill it. So it is taken whole first; should
  * a fraction come out of [0, 1], its sweeps are repeated in parts that keep to
- * the bound, all with the velocity u_f of the step. In the collapse of
- * examples/column.lua at level 10, with the default solver.cfl of 0.7, one
- * step in 13 is.
+ * the bound, all with the velocity u_f of the step.
  */
 #ifndef TALUS_FRACTIONS_H
 #define TALUS_FRACTIONS_H

@@ -95,7 +95,7 @@ static const struct key KEYS[] = {
 
     {"solver", KEY_SECTION, OPTIONAL, .help = "the numerical method"},
     {"solver.cfl", KEY_NUMBER, .low = 0, .high = 1, .above = true,
-     DEFAULT "0.5", .unit = "", .offset = AT(cfl),
+     DEFAULT "0.7", .unit = "", .offset = AT(cfl),
      .help = "bound on sum |u_f| A dt/(2 V)"},
     {"solver.dt_max", KEY_NUMBER, POSITIVE, DEFAULT "inf", .unit = "s",
      .offset = AT(dt_max), .help = "longest time step"},

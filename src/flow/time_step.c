@@ -8,7 +8,7 @@
 
 /* From one step to the next dt grows by at most this factor. */
 #define DT_GROWTH 1.2
-/* dt is at most this times sqrt(h / acceleration of the grains). */
+/* dt is at most this times the larger of |u|/|g| and sqrt(h/|g|) of grains. */
 #define DT_ACCELERATION 0.1
 /* A step that makes up for a last one too long is at least this part of the
  * bound. */
@@ -49,19 +49,21 @@ static double cfl_bound(const struct simulation *sim) {
   return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
 }
 
-/* A part of the dt in which the acceleration g moves a cell of grains by its
- * size: the viscosity is that of the last strain rate, and lags behind while
- * a flow sets off. */
+/* The dt in which g changes the speed of grains by a part of it, or of what g
+ * gives them from rest over a cell, sqrt(g h), where that is more: the
+ * viscosity is that of the last strain rate, and lags behind while a flow sets
+ * off. */
 static double acceleration_bound(const struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double largest = 0;
+    double g2 = 0, u2 = 0;
     if (!(sim->c->v[i] > 0.5)) continue;
     for (int d = 0; d < DIM; d++) {
-      largest = max2(largest, fabs(sim->g[d]->v[i]));
+      g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
+      u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
     }
-    most = max2(most, largest / mesh->h[i]);
+    if (g2 > 0) most = max2(most, g2 / max2(u2, sqrt(g2) * mesh->h[i]));
   }
   most = mesh_max(mesh, most);
   return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;

@@ -77,7 +77,7 @@ START_TEST(case_fills_params_and_defaults) {
   ck_assert_int_eq(params->nboundaries, 6);
   ck_assert_ptr_null(params->boundary_select);
   ck_assert_ptr_null(params->velocity[0].eval);
-  ck_assert_double_eq(params->cfl, 0.5);
+  ck_assert_double_eq(params->cfl, 0.7);
   ck_assert_double_eq(params->tolerance_viscous, 1e-4);
   ck_assert(isinf(params->dt_max));
   ck_assert_double_eq(params->theta, 1);
@@ -343,13 +343,13 @@ START_TEST(printed_rows_say_where_values_come_from) {
       "n=4");
   printed(file, case_print, text);
   ck_assert_ptr_nonnull(strstr(text, "a number, \"quoted\" [command line]"));
-  ck_assert_ptr_nonnull(strstr(text, "solver.cfl                 = 0.5 "));
+  ck_assert_ptr_nonnull(strstr(text, "solver.cfl                 = 0.7 "));
   printed(file, case_write_parameters, text);
   ck_assert_int_eq(strncmp(text, "key,value,unit,origin\n", 22), 0);
   ck_assert_ptr_nonnull(strstr(text, "\nn,4,,command line\n"));
   ck_assert_ptr_nonnull(strstr(text, "\ntitle,\"a, \"\"b\"\"\",,case\n"));
   ck_assert_ptr_nonnull(strstr(text, "\ndomain.size,4,m,case\n"));
-  ck_assert_ptr_nonnull(strstr(text, "\nsolver.cfl,0.5,,default\n"));
+  ck_assert_ptr_nonnull(strstr(text, "\nsolver.cfl,0.7,,default\n"));
   /* names are unique: they become attributes of HDF5 files */
   ck_assert_ptr_nonnull(strstr(text, "\nparam.gravity,1,,default\n"));
   ck_assert_ptr_nonnull(strstr(text, "\ngravity,\"0,-1\",m/s^2,case\n"));
