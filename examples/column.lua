@@ -104,7 +104,7 @@ return {
     top = { "outflow", pressure = -rho_gas * g * box },
   },
 
-  adapt = { { "interface", width = 3 }, { "inside" } },
+  adapt = { { "interface", width = 4 }, { "inside" } },
   solver = { tolerance = tolerance, cfl = cfl },
   output = { stop = stop, profile_times = profile_times, snapshot_every = 0.1 },
 
