@@ -71,7 +71,8 @@ void fields_reset(struct fields *fields, const struct mesh *mesh);
 void fields_destroy(struct fields *fields);
 
 /* Keep a copy of all fields with restart == true (cell fields: leaf values),
- * and set them back to it. The mesh must not change in between. */
+ * and set them, or one of them, back to it. The mesh must not change in
+ * between. */
 void fields_save(struct fields *fields, const struct mesh *mesh);
 void fields_restore(struct fields *fields, const struct mesh *mesh);
 void field_restore(struct field *field, const struct mesh *mesh);

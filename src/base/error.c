@@ -50,8 +50,8 @@ static void report_leaks(void) {
 }
 
 /* Started without a launcher, Open MPI forks a daemon to spawn further
- * processes from, and waits 0.2 s for networks to answer, unless told that
- * nobody will ask for either. What the user has set stands. */
+ * processes from, and waits for networks to answer, unless told that nobody
+ * will ask for either. What the user has set stands. */
 static void expect_no_others(void) {
   static const char *const launcher[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK",
                                          "PMI_RANK", "SLURM_PROCID"};

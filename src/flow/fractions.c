@@ -83,8 +83,8 @@ static void log_divergence(struct simulation *sim, double dt) {
   sim->divergence_volume += mesh_sum(mesh, sum);
 }
 
-/* Axis by axis, in an order that alternates from step to step. u, c
- * and band are filled. */
+/* Axis by axis, in an order that alternates from step to step. u, c and band
+ * are filled. */
 static void sweep_fractions(struct simulation *sim, double dt) {
   const struct mesh *mesh = sim->mesh;
   for (int k = 0; k < sim->params->ntracers; k++) {
