@@ -22,6 +22,7 @@
 #include "talus/fractions.h"
 #include "talus/log.h"
 #include "talus/minmax.h"
+#include "talus/poisson.h"
 #include "talus/projection.h"
 #include "talus/properties.h"
 #include "talus/side_walls.h"
@@ -34,6 +35,9 @@
  * second number, where round-off may be. */
 #define STALL_SLACK 10
 #define STALL_FLOOR 1e-10
+
+/* Leaves with more grains than this take their g from the last pressure. */
+#define HOLDS_GRAINS 0.01
 
 /* A step that fails is repeated so often, each time with this part of dt. */
 enum { RETRIES = 3 };
@@ -82,6 +86,25 @@ static void update_density(struct simulation *sim) {
   field_fill(mesh, sim->rho);
   properties_gravity(mesh, density, &balance, sim->c->v, normal, sim->plane->v,
                      sim->alpha_f->v, sim->gravity_f->v);
+}
+
+/* g of the last pressure with the density as it is now, in leaves that hold
+ * grains: what the projection then changes of g, the viscous solve has not
+ * seen. In gas that grains have just left their pressure would do far too much
+ * (dense_square), so it keeps its g. */
+static void update_acceleration(struct simulation *sim) {
+  const struct mesh *mesh = sim->mesh;
+  const struct projection projection = projection_of(sim);
+  double *g[DIM];
+  field_arrays(sim->cell, g);
+  field_fill(mesh, sim->p);
+  poisson_flux(mesh, projection.alpha_f, sim->p->v, projection.flux);
+  projection_acceleration(&projection, sim->face[1]->v, g);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      if (sim->c->v[i] > HOLDS_GRAINS) sim->g[e]->v[i] = g[e][i];
+    }
+  }
 }
 
 /* Viscous work on the grains over dt, from eta and the strain rate. */
@@ -452,7 +475,8 @@ static void lap(struct simulation *sim, enum step_stage stage) {
 /* Stages 3 to 8: the state at `time` + dt. */
 static void advance_state(struct simulation *sim, double dt, double dt_c) {
   fractions_advance(sim, dt_c), lap(sim, STAGE_FRACTION);
-  update_density(sim), lap(sim, STAGE_DENSITY);
+  update_density(sim);
+  update_acceleration(sim), lap(sim, STAGE_DENSITY);
   update_viscosity(sim, sim->u_old);
   add_dissipation(sim, dt), lap(sim, STAGE_RHEOLOGY);
   advect_momentum(sim, dt), lap(sim, STAGE_ADVECTION);

@@ -645,6 +645,42 @@ START_TEST(repetitions_close_in_on_a_velocity) {
 }
 END_TEST
 
+/* With a viscosity that does not change, a repetition mends what the viscous
+ * solve has not seen of the new pressure gradient. In the grains of a moving
+ * column that is what the interface has changed of their density: by how much
+ * of their mean speed it moves them, in the mean of the squares: 1.2e-3 (2D),
+ * 2.3e-3 (3D), and 1.9e-3 and 4.5e-3 where g has that of the last step. */
+START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
+  struct params params = box_params(DIM == 2 ? 6 : 5);
+  double *u[2][DIM], sum[2] = {0};
+  bool done = true;
+  params.cfl = 0.7;
+  params.grains.rheology = newtonian(0.1);
+  params.shape = (struct function){column, NULL};
+  struct simulation *sim[2];
+  for (int k = 0; k < 2; k++) {
+    params.picard = 0;
+    sim[k] = simulation_new(&params);
+    done = advance(sim[k], 15, 1) && done;
+    params.picard = k;
+    done = advance(sim[k], 1, 1) && done;
+    field_arrays(sim[k]->u, u[k]);
+  }
+  const struct mesh *mesh = sim[0]->mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double grains = sim[0]->c->v[i] * mesh_volume(mesh, i);
+    for (int d = 0; d < DIM; d++) {
+      sum[0] += grains * pow(u[1][d][i] - u[0][d][i], 2);
+      sum[1] += grains * pow(u[0][d][i], 2);
+    }
+  }
+  const double part = sqrt(mesh_sum(mesh, sum[0]) / mesh_sum(mesh, sum[1]));
+  for (int k = 0; k < 2; k++) simulation_destroy(sim[k]);
+  ck_assert(done);
+  ck_assert_double_le(part, DIM == 2 ? 1.6e-3 : 3.2e-3);
+}
+END_TEST
+
 /* One iteration is not enough for a column that falls; it is then where it
  * was. */
 START_TEST(a_solve_that_fails_is_told) {
@@ -695,6 +731,7 @@ Suite *step_suite(void) {
   tcase_add_test(tc, an_opening_lets_no_grains_in);
   tcase_add_test(tc, a_heap_less_steep_than_friction_rests);
   tcase_add_test(tc, repetitions_close_in_on_a_velocity);
+  tcase_add_test(tc, the_viscous_solve_sees_the_density_of_its_step);
   tcase_add_test(tc, a_solve_that_fails_is_told);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
