@@ -11,16 +11,16 @@
  *
  *   collapse, a = 1.42: examples/sensitivity.lua level=8 slip=0 picard=...
  *     repetition              1       2       3       4       6       8
- *     change (median)    1.6e-2  2.8e-3  1.5e-3  7.6e-4  2.3e-4  8.2e-5
+ *     change (median)    2.4e-2  4.6e-3  1.9e-3  1.1e-3  3.8e-4  1.8e-4
  *   repetitions               0       1       2       4       8
- *     front at t = 3      3.415   3.415   3.416   3.417   3.418
- *     final front         4.283   4.246   4.244   4.244   4.245
+ *     front at t = 3      3.435   3.416   3.418   3.417   3.418
+ *     final front         4.302   4.246   4.242   4.243   4.242
  *     time                    1     1.4     1.8     2.6       4
  *
  * One is worth its price where the front is wanted to 1 %, more are not. Where
  * a flow sets off from rest the viscosity lags most: Bagnold's flow,
- * examples/bagnold.lua picard=..., is at t = 5 sqrt(H/g) at 0.261, 0.320,
- * 0.334, 0.344 with 0, 1, 2, 4, and at the same steady speed with all (2.060
+ * examples/bagnold.lua picard=..., is at t = 5 sqrt(H/g) at 0.274, 0.333,
+ * 0.348, 0.357 with 0, 1, 2, 4, and at the same steady speed with all (2.060
  * at t = 200).
  */
 #ifndef TALUS_STEP_H

@@ -2,15 +2,15 @@
 /* The length of a time step.
  *
  * dt is bounded by the advection, 1/2 sum |u_f| A dt / V <= cfl in every cell,
- * and by the acceleration g of the grains, dt <= 0.1 max(|u|/|g|, sqrt(h/|g|));
- * it grows by at most 1.2 from one step to the next.
+ * and by the acceleration g of grains that set off, |u| < sqrt(|g| h): there dt
+ * <= 0.1 sqrt(h/|g|); it grows by at most 1.2 from one step to the next.
  *
  * What cfl costs and gives (fractions.h says why it may exceed 1/2): collapse
  * by `talus run examples/column.lua cfl=...`.
  *   cfl                  0.25    0.5     0.6     0.7     0.8       1
- *   steps                1615    887     776     705     652     600
- *   front              9.1119  9.1317  9.1356  9.1390  9.1534  9.1621
- *   off the grains     0.0630  0.0629  0.0628  0.0628  0.0627  0.0627
+ *   steps                1607    870     755     678     629     573
+ *   front              9.1108  9.1305  9.1360  9.1434  9.1517  9.1611
+ *   off the grains     0.0630  0.0629  0.0629  0.0628  0.0628  0.0628
  * (the last line: mean of tools/compare_outline.py). Beyond 0.7 the error in
  * time grows faster than the number of steps falls.
  */

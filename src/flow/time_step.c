@@ -8,7 +8,7 @@
 
 /* From one step to the next dt grows by at most this factor. */
 #define DT_GROWTH 1.2
-/* dt is at most this times the larger of |u|/|g| and sqrt(h/|g|) of grains. */
+/* dt is at most this times sqrt(h/|g|) of grains that set off. */
 #define DT_ACCELERATION 0.1
 /* A step that makes up for a last one too long is at least this part of the
  * bound. */
@@ -49,10 +49,9 @@ static double cfl_bound(const struct simulation *sim) {
   return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
 }
 
-/* The dt in which g changes the speed of grains by a part of it, or of what g
- * gives them from rest over a cell, sqrt(g h), where that is more: the
- * viscosity is that of the last strain rate, and lags behind while a flow sets
- * off. */
+/* A part of the dt in which grains that set off cross a cell. They are slower
+ * yet than their acceleration would make them over it, |u| < sqrt(|g| h): the
+ * viscosity is that of the last strain rate, and lags behind. */
 static double acceleration_bound(const struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
   double most = 0;
@@ -63,7 +62,8 @@ static double acceleration_bound(const struct simulation *sim) {
       g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
       u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
     }
-    if (g2 > 0) most = max2(most, g2 / max2(u2, sqrt(g2) * mesh->h[i]));
+    const double speed2 = sqrt(g2) * mesh->h[i];
+    if (u2 < speed2) most = max2(most, speed2 / (mesh->h[i] * mesh->h[i]));
   }
   most = mesh_max(mesh, most);
   return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;
