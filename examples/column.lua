@@ -30,8 +30,8 @@
 -- a continuum: validity of a two-dimensional Navier-Stokes model with a
 -- mu(I)-rheology, J. Fluid Mech. 686 (2011) 378, section 3.2 and figure 10.
 --
--- Cost. Level 10 (32 cells to L0, about 9,000 cells): three seconds
--- on one core. Level 9: less than one; level 8: a fraction of one.
+-- Cost. Level 10 (32 cells to L0, about 9,000 cells): three seconds on one
+-- core. Level 9: less than one; level 8: a fraction of one.
 --
 -- Expect. The column falls and spreads. At 2.28 sqrt(H0/g) the front is between
 -- 8.8 and 10.1 L0 and still advances (discrete grains: 9.7, Gerris: 8.95), the

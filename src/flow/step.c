@@ -96,6 +96,7 @@ static void update_acceleration(struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
   const struct projection projection = projection_of(sim);
   double *g[DIM];
+  if (sim->params->single_phase) return;
   field_arrays(sim->cell, g);
   field_fill(mesh, sim->p);
   poisson_flux(mesh, projection.alpha_f, sim->p->v, projection.flux);
