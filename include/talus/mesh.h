@@ -128,6 +128,11 @@ void mesh_destroy(struct mesh *mesh);
  * values at the boundary are taken as 0 (for corrections). Collective. */
 void mesh_fill(const struct mesh *mesh, int n, double *const v[],
                const struct bc *const bc[], bool homogeneous);
+/* Spread a mark, 0 or more on leaves, by a leaf in every direction: 1 in those
+ * that had it anywhere in their stencil, else 0. Children of a coarser leaf
+ * have its mark, what lies beyond a boundary none. mark [ncells], valid on
+ * leaves. Collective. */
+void mesh_spread(const struct mesh *mesh, double *mark);
 /* Only copy leaf values to the ghosts of other ranks. v[k] [>= nleaves +
  * nghosts]. Collective. */
 void mesh_fill_ghosts(const struct mesh *mesh, int n, double *const v[]);

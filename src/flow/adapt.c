@@ -2,7 +2,6 @@
 #include "talus/adapt.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "talus/error.h"
 #include "talus/forest.h"
@@ -34,26 +33,6 @@ static void mark_surface(const struct mesh *mesh, const double *c,
   }
 }
 
-/* Spread a mark by one leaf in every direction. Children of a coarser leaf have
- * its mark, what lies beyond a boundary none. */
-static void spread(const struct mesh *mesh, const struct bc *bc, double *mark,
-                   double *scratch) {
-  const struct bc *bcs[] = {bc};
-  mesh_fill(mesh, 1, &mark, bcs, false);
-  for (int32_t k = mesh->begin_virtual; k < mesh->begin_boundary; k++) {
-    mark[k] = mark[mesh->virtual_leaf[(k - mesh->begin_virtual) / NCHILD]];
-  }
-  for (int32_t k = mesh->begin_boundary; k < mesh->ncells; k++) mark[k] = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double most = 0;
-    for (int s = 0; s < NSTENCIL; s++) {
-      most = max2(most, mark[mesh->stencil[i][s]]);
-    }
-    scratch[i] = most > 0;
-  }
-  memcpy(mark, scratch, (size_t)mesh->nleaves * sizeof *mark);
-}
-
 struct wanted {
   int8_t *divide; /* [nleaves] finest level asked for */
   int8_t *keep;   /* level above which a leaf may be merged */
@@ -68,11 +47,11 @@ static void want_surface(struct simulation *sim,
                          const struct criterion *criterion,
                          struct wanted *wanted) {
   const struct mesh *mesh = sim->mesh;
-  double *mark = sim->cell[0]->v, *scratch = sim->cell[1]->v;
+  double *mark = sim->cell[0]->v;
   const int width = (int)ceil(criterion->width);
   mark_surface(mesh, sim->c->v, mark);
   for (int k = 0; k <= width + HYSTERESIS; k++) {
-    if (k > 0) spread(mesh, sim->cell[0]->bc, mark, scratch);
+    if (k > 0) mesh_spread(mesh, mark);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       if (mark[i] > 0) {
         want(wanted, i, k <= width ? criterion->level : 0, criterion->level);

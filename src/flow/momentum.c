@@ -6,20 +6,6 @@
 #include "talus/minmax.h"
 #include "talus/vof.h"
 
-/* Mark what touches a marked leaf. band is filled before and after. */
-static void widen_band(const struct mesh *mesh, const struct bc *const *bc,
-                       double *band) {
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double most = 0;
-    for (int s = 0; s < NSTENCIL; s++) {
-      most = max2(most, band[mesh->stencil[i][s]]);
-    }
-    if (most > 0 && band[i] == 0) band[i] = -1; /* new, marks none itself */
-  }
-  for (int32_t i = 0; i < mesh->nleaves; i++) band[i] = fabs(band[i]);
-  mesh_fill(mesh, 1, &band, bc, true);
-}
-
 void momentum_mark_band(const struct mesh *mesh, const double *c, int rings,
                         double *band) {
   static const struct bc neumann[MESH_MAX_PATCHES];
@@ -32,8 +18,8 @@ void momentum_mark_band(const struct mesh *mesh, const double *c, int rings,
     }
     band[i] = high > VOF_EMPTY && low < 1 - VOF_EMPTY;
   }
+  for (int k = 1; k < rings; k++) mesh_spread(mesh, band);
   mesh_fill(mesh, 1, &band, bc, true);
-  for (int k = 1; k < rings; k++) widen_band(mesh, bc, band);
 }
 
 static double minmod(double a, double b) {

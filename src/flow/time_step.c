@@ -62,8 +62,8 @@ static double acceleration_bound(const struct simulation *sim) {
       g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
       u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
     }
-    const double speed2 = sqrt(g2) * mesh->h[i];
-    if (u2 < speed2) most = max2(most, speed2 / (mesh->h[i] * mesh->h[i]));
+    const double g = sqrt(g2), h = mesh->h[i];
+    if (u2 < g * h) most = max2(most, g / h);
   }
   most = mesh_max(mesh, most);
   return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;

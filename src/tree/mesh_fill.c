@@ -6,6 +6,7 @@
 #include "exchange.h"
 #include "talus/error.h"
 #include "talus/mesh.h"
+#include "talus/minmax.h"
 
 static void fill_averages(const struct mesh *mesh, double *v) {
   const int32_t n = mesh->begin_virtual - mesh->begin_average;
@@ -85,4 +86,22 @@ void mesh_fill_faces(const struct mesh *mesh, int n, double *const v[]) {
       v[k][mesh->begin_face_average + i] = sum / (NCHILD / 2);
     }
   }
+}
+
+void mesh_spread(const struct mesh *mesh, double *mark) {
+  static const struct bc none[MESH_MAX_PATCHES];
+  const struct bc *bc[] = {none};
+  mesh_fill(mesh, 1, &mark, bc, true);
+  for (int32_t k = mesh->begin_virtual; k < mesh->begin_boundary; k++) {
+    mark[k] = mark[mesh->virtual_leaf[(k - mesh->begin_virtual) / NCHILD]];
+  }
+  for (int32_t k = mesh->begin_boundary; k < mesh->ncells; k++) mark[k] = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double most = 0;
+    for (int s = 0; s < NSTENCIL; s++) {
+      most = max2(most, mark[mesh->stencil[i][s]]);
+    }
+    if (mark[i] == 0 && most > 0) mark[i] = -1; /* new: spreads no further */
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) mark[i] = mark[i] != 0;
 }

@@ -166,9 +166,7 @@ START_TEST(a_collapse_keeps_its_volume) {
   for (int k = 0; k < 60 && done; k++) {
     done = step_advance(sim, 1) == EXIT_DONE;
     drift = fmax(drift, fabs(integral(sim->mesh, sim->c->v) / volume - 1));
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-      excess = fmax(excess, fmax(-sim->c->v[i], sim->c->v[i] - 1));
-    }
+    excess = fmax(excess, vof_excess(sim->mesh, sim->c->v));
     adapted = adapted || (double)forest_nleaves_global(sim->forest) != cells;
   }
   excess = mesh_max(sim->mesh, excess);
@@ -299,8 +297,10 @@ static double fall(enum look look, double out[NNUMBERS]) {
     const bool done = step_advance(sim, 1) == EXIT_DONE;
     const double left = sim->dt * clean_divergence(sim->mesh, sim->u_f->v);
     divergence = done ? fmax(divergence, left) : 1;
-    if (look == LOOKED_AT)
-      fractions_synchronise(sim), fractions_desynchronise(sim);
+    if (look == LOOKED_AT) {
+      fractions_synchronise(sim);
+      fractions_desynchronise(sim);
+    }
     if (look == PLANES_ANEW) sim->planes_hold = false;
   }
   numbers(sim, out);
