@@ -39,16 +39,16 @@
 -- mostly dense, above a wedge at rest, and only collide in the foot of the
 -- front; at 2 tau_c the wedge has two thirds of its size.
 --
--- Table I gives 27.3 cm, not the 20.7 of the paper (height 5.9 cm, paper 6.48),
+-- Table I gives 27.4 cm, not the 20.7 of the paper (height 5.9 cm, paper 6.48),
 -- and no flow with friction in local balance can give 20.7: friction is then
 -- between eta_S = 0.42 and 0.54, and a column of constant friction 0.42, 0.48,
--- 0.51, 0.54, 0.57 runs 29.2, 25.2, 23.6, 22.1, 20.6 cm. There would have to be
+-- 0.51, 0.54, 0.57 runs 29.3, 25.4, 23.7, 22.2, 20.9 cm. There would have to be
 -- more friction everywhere than the closure has anywhere; where it comes from
 -- in the paper, whose run-out hardly knows eta_S, is not known (dilatancy and
 -- temperature out of balance, diffusion of the solid fraction?). Levels 7, 8, 9
--- give 27.5, 27.3, 27.1 cm, eta_cap=25 and 2500, tolerance=1e-6 change nothing.
--- The least viscosity counts: 31 cm with eta_floor=0 (with a film ahead that a
--- finer grid draws out), 24.8 cm with 3. With mu(I) the solver has the 2.2 H_i
+-- give 27.8, 27.4, 27.2 cm, eta_cap=25 and 2500, tolerance=1e-6 change nothing.
+-- The least viscosity counts: 32 cm with eta_floor=0 (with a film ahead that a
+-- finer grid draws out), 24.9 cm with 3. With mu(I) the solver has the 2.2 H_i
 -- of Gerris [lagree_staron_popinet_2011, eq. 3.3] within 4 %, 29.6 cm here, and
 -- glass beads run 1.8 H_i (their eq. 3.1), 24.2 cm: a tenth less than here, a
 -- sixth more than in the paper.

@@ -26,10 +26,10 @@
 -- Cost. Level 7 (16 cells to L0, about 1,300 cells): less than a second.
 --
 -- Expect. mu_i and coulomb come to rest as heaps (stop=8), with fronts at
--- 4.1 and 4.8 L0; outlines are 0.7 d apart at 1.5 sqrt(H0/g), 1.6 d at 4, in
+-- 4.1 and 4.9 L0; outlines are 0.7 d apart at 1.5 sqrt(H0/g), 1.6 d at 4, in
 -- the mean. newtonian and bagnold never stop (fronts at 3.2 and 5.4 L0 at
 -- 4 sqrt(H0/g), 3.8 and 7.7 at 8): a layer with a blunt front, and a thin one.
--- bingham stops with a steep rounded front (4.0 L0), and carries the upper
+-- bingham stops with a steep rounded front (4.1 L0), and carries the upper
 -- corner of the column along as a solid, a hump in the deposit.
 --
 -- Try. All in one picture of five panels:

@@ -27,9 +27,9 @@
 -- Expect. Less friction of any kind runs further: the run-out falls with mu_s
 -- and delta_mu and rises with I0. Valette finds run-out ~ mu_s^-1.2 (0.32 to
 -- 0.62) and I0^0.11 (0.04 to 4), and a power four times weaker for delta_mu
--- than for mu_s; here it is mu_s^-1.13, I0^0.12, delta_mu^-0.25 (levels 8 and
--- 9: mu_s^-1.10, mu_s^-1.08; with slip=0 at levels 7, 8, 9: -1.07, -1.00,
--- -0.97, as the half cell by which a front slips in any case gets smaller).
+-- than for mu_s; here it is mu_s^-1.11, I0^0.12, delta_mu^-0.25 (levels 8 and
+-- 9: mu_s^-1.05, mu_s^-1.05; with slip=0 at levels 7, 8, 9: -1.06, -0.97,
+-- -0.95, as the half cell by which a front slips in any case gets smaller).
 -- More friction also means an earlier arrest, from 6.6 sqrt(L0/g) for
 -- mu_s = 0.32 to 5.2 for 0.62.
 --

@@ -38,8 +38,7 @@
 
 /* Leaves with more grains than this take their g from the last pressure. The
  * speed of dense_square at 1e6 is then off by 1e-5; by 1e-3 with 1e-6 instead,
- * 1.6e-2 with all leaves. With 0.1 the column of level 11 has gained three
- * times as much energy at t = 4 (`numerical` of examples/column.lua). */
+ * 1.6e-2 with all leaves. */
 #define HOLDS_GRAINS 0.01
 
 /* A step that fails is repeated so often, each time with this part of dt. */
