@@ -1,15 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/run_state.h"
 
+#include <float.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
 #include <mpi.h>
 #include <string.h>
 
 #include "talus/checkpoint.h"
+#include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/params.h"
 #include "talus/simulation.h"
 
-enum { MAX_SCALARS = 32, NSOLVES = 3 };
+enum { MAX_SCALARS = 48, NSOLVES = 3 };
+
+/* More steps than a run can make. */
+static const double MOST_STEPS = 1e15;
 
 /* Iterations and verdicts of the solves, as the file wants them. */
 struct verdicts {
@@ -23,31 +31,32 @@ static int list_scalars(struct simulation *sim, struct run_state *state,
   struct energy *energy = &sim->energy;
   struct solve_stats *p = &sim->pressure, *q = &sim->predictor,
                      *v = &sim->viscous;
+  const double any = DBL_MAX, most = INFINITY; /* of a failed solve */
   const struct checkpoint_scalar all[] = {
-      {"time", &sim->time, NULL},
-      {"dt", &sim->dt, NULL},
-      {"step", NULL, &sim->step},
-      {"travel", &sim->travel, NULL},
-      {"kinetic", &energy->kinetic, NULL},
-      {"potential", &energy->potential, NULL},
-      {"dissipated", &energy->dissipated, NULL},
-      {"initial_energy", &energy->initial, NULL},
-      {"divergence_volume", &sim->divergence_volume, NULL},
-      {"repeat_change", &sim->repeat_change, NULL},
-      {"wall_seconds", &state->wall_seconds, NULL},
-      {"snapshots", NULL, &state->snapshots},
-      {"pressure_iterations", NULL, &verdicts->iterations[0]},
-      {"predictor_iterations", NULL, &verdicts->iterations[1]},
-      {"viscous_iterations", NULL, &verdicts->iterations[2]},
-      {"pressure_status", NULL, &verdicts->status[0]},
-      {"predictor_status", NULL, &verdicts->status[1]},
-      {"viscous_status", NULL, &verdicts->status[2]},
-      {"pressure_residual_before", &p->residual_before, NULL},
-      {"pressure_residual_after", &p->residual_after, NULL},
-      {"predictor_residual_before", &q->residual_before, NULL},
-      {"predictor_residual_after", &q->residual_after, NULL},
-      {"viscous_residual_before", &v->residual_before, NULL},
-      {"viscous_residual_after", &v->residual_after, NULL}};
+      {"time", &sim->time, NULL, 0, any},
+      {"dt", &sim->dt, NULL, 0, any},
+      {"step", NULL, &sim->step, 0, MOST_STEPS},
+      {"travel", &sim->travel, NULL, 0, any},
+      {"kinetic", &energy->kinetic, NULL, 0, any},
+      {"potential", &energy->potential, NULL, -any, any},
+      {"dissipated", &energy->dissipated, NULL, -any, any},
+      {"initial_energy", &energy->initial, NULL, -any, any},
+      {"divergence_volume", &sim->divergence_volume, NULL, -any, any},
+      {"repeat_change", &sim->repeat_change, NULL, 0, most},
+      {"wall_seconds", &state->wall_seconds, NULL, 0, any},
+      {"snapshots", NULL, &state->snapshots, 0, INT_MAX},
+      {"pressure_iterations", NULL, &verdicts->iterations[0], 0, INT_MAX},
+      {"predictor_iterations", NULL, &verdicts->iterations[1], 0, INT_MAX},
+      {"viscous_iterations", NULL, &verdicts->iterations[2], 0, INT_MAX},
+      {"pressure_status", NULL, &verdicts->status[0], 0, SOLVE_INCOMPATIBLE},
+      {"predictor_status", NULL, &verdicts->status[1], 0, SOLVE_INCOMPATIBLE},
+      {"viscous_status", NULL, &verdicts->status[2], 0, SOLVE_INCOMPATIBLE},
+      {"pressure_residual_before", &p->residual_before, NULL, 0, most},
+      {"pressure_residual_after", &p->residual_after, NULL, 0, most},
+      {"predictor_residual_before", &q->residual_before, NULL, 0, most},
+      {"predictor_residual_after", &q->residual_after, NULL, 0, most},
+      {"viscous_residual_before", &v->residual_before, NULL, 0, most},
+      {"viscous_residual_after", &v->residual_after, NULL, 0, most}};
   _Static_assert(sizeof all <= MAX_SCALARS * sizeof all[0], "MAX_SCALARS");
   memcpy(list, all, sizeof all);
   return (int)(sizeof all / sizeof all[0]);
@@ -60,6 +69,13 @@ static void list_solves(struct simulation *sim,
   solve[2] = &sim->viscous;
 }
 
+/* A residual of a solve that failed may be no number; a checkpoint holds none
+ * that it would refuse. */
+static void make_writable(struct solve_stats *solve) {
+  if (isnan(solve->residual_before)) solve->residual_before = INFINITY;
+  if (isnan(solve->residual_after)) solve->residual_after = INFINITY;
+}
+
 void run_state_write(const char *path, struct simulation *sim,
                      struct run_state *state, const char *parameters) {
   struct solve_stats *solve[NSOLVES];
@@ -68,10 +84,22 @@ void run_state_write(const char *path, struct simulation *sim,
   for (int k = 0; k < NSOLVES; k++) {
     verdicts.iterations[k] = solve[k]->iterations;
     verdicts.status[k] = solve[k]->status;
+    make_writable(solve[k]);
   }
+  if (isnan(sim->repeat_change)) sim->repeat_change = INFINITY;
   struct checkpoint_scalar list[MAX_SCALARS];
   int n = list_scalars(sim, state, &verdicts, list);
   checkpoint_write(path, sim->mesh, &sim->fields, n, list, parameters);
+}
+
+/* Each step, and the start, writes one snapshot at most. */
+static void check_snapshots(const char *path, int64_t snapshots, int64_t step) {
+  if (snapshots <= step + 1) return;
+  USER_ERROR("'%s' is damaged or was edited: snapshots = %" PRId64
+             ", after step %" PRId64 " a number from 0 to %" PRId64
+             " is needed; take another copy of it, or start afresh without "
+             "--restart",
+             path, snapshots, step, step + 1);
 }
 
 struct simulation *run_state_read(const char *path, const struct params *params,
@@ -89,6 +117,7 @@ struct simulation *run_state_read(const char *path, const struct params *params,
   struct checkpoint_scalar list[MAX_SCALARS];
   int n = list_scalars(sim, state, &verdicts, list);
   checkpoint_read_scalars(checkpoint, n, list);
+  check_snapshots(path, state->snapshots, sim->step);
   checkpoint_close(checkpoint);
   list_solves(sim, solve);
   for (int k = 0; k < NSOLVES; k++) {

@@ -10,11 +10,15 @@
  * restarted run repeats the other bit by bit; on another number it goes on
  * from the same values with its leaves spread evenly.
  *
- * The file is written beside the old one and then takes its place, so that a
- * crash or a full disk leaves the old one whole.
+ * The file is written beside the old one, sealed (seal.h), brought to the disk,
+ * and then takes the place of the old one, so that a crash or a full disk
+ * leaves the old one whole. A file whose seal is broken is refused before
+ * anything of it is used, and so are values that no run can have written:
+ * fractions out of [0, 1], numbers that are not finite or out of their range.
  *
- *   /                    attributes version, dimension, trees, size, origin,
- *                        periodic
+ *   (512 bytes)          the seal
+ *   /                    attributes version, format, dimension, trees, size,
+ *                        origin, periodic
  *   /parameters          a group with one text attribute per parameter
  *   /state               a group with the scalars of the model as attributes
  *   /levels /partition   int8 [leaves], int64 [ranks]
@@ -34,11 +38,13 @@ struct forest;
 struct forest_layout;
 struct mesh;
 
-/* One number of the model's state: `real` or `integer`, the other NULL. */
+/* One number of the model's state: `real` or `integer`, the other NULL, and
+ * the range [low, high] it is read in; 0, 0: every finite number. */
 struct checkpoint_scalar {
   const char *name;
   double *real;     /* borrowed */
   int64_t *integer; /* borrowed */
+  double low, high;
 };
 
 /* Write every field with `restart` set and the scalars. `parameters` is csv
@@ -63,7 +69,8 @@ struct forest *checkpoint_forest(struct checkpoint *checkpoint,
  * Collective; a field that is not in the file is a USER_ERROR. */
 void checkpoint_read_fields(struct checkpoint *checkpoint,
                             const struct mesh *mesh, struct fields *fields);
-/* The scalars. Collective; a missing one is a USER_ERROR. */
+/* The scalars. Collective; one that is missing or out of its range is a
+ * USER_ERROR. */
 void checkpoint_read_scalars(struct checkpoint *checkpoint, int n,
                              const struct checkpoint_scalar *scalars);
 void checkpoint_close(struct checkpoint *checkpoint);

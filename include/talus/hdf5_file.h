@@ -22,8 +22,9 @@ struct hdf5_file;
 
 enum hdf5_type { HDF5_REAL, HDF5_INT64, HDF5_INT8 };
 
-/* Make a file, or empty the one that is there. The path is copied. */
-struct hdf5_file *hdf5_create(MPI_Comm comm, const char *path);
+/* Make a file, or empty the one that is there. Its first `head` bytes (0, 512,
+ * 1024, ...) are left to the caller. The path is copied. */
+struct hdf5_file *hdf5_create(MPI_Comm comm, const char *path, size_t head);
 /* Open a file to read; NULL on all ranks if it is missing or no HDF5 file. */
 struct hdf5_file *hdf5_open(MPI_Comm comm, const char *path);
 /* The communicator it was opened on. Not collective. */
@@ -43,7 +44,8 @@ typedef void hdf5_fill(void *context, int64_t first, int64_t n, void *data);
 void hdf5_write_pieces(struct hdf5_file *file, const char *name,
                        enum hdf5_type type, int64_t rows, int columns,
                        hdf5_fill *fill, void *context);
-/* Size of a dataset over all ranks; false if there is none. */
+/* Size of a dataset over all ranks; false if there is none, or none of numbers
+ * in one or two dimensions. */
 bool hdf5_read_size(struct hdf5_file *file, const char *name, int64_t *rows,
                     int *columns);
 /* Read rows [first, first + rows), which may differ from rank to rank, of a

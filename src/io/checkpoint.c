@@ -2,10 +2,13 @@
 #include "talus/checkpoint.h"
 
 #include <errno.h>
+#include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "disk.h"
 #include "talus/error.h"
 #include "talus/field.h"
 #include "talus/forest.h"
@@ -13,8 +16,16 @@
 #include "talus/memory.h"
 #include "talus/mesh.h"
 #include "talus/output.h"
+#include "talus/seal.h"
 
 enum { PATH_LENGTH = 4096, NAME_LENGTH = 128 };
+
+/* Of the layout in checkpoint.h; raise it whenever a file of before can no
+ * longer be read. The files of format 1 had no seal. */
+enum { FORMAT = 2 };
+
+/* How far round-off may take a volume fraction out of [0, 1]. */
+static const double FRACTION_SLACK = 1e-6;
 
 struct checkpoint {
   struct hdf5_file *file;
@@ -30,11 +41,12 @@ static void field_path(const struct field *field, char path[NAME_LENGTH]) {
 
 static void write_layout(struct hdf5_file *file,
                          const struct forest_layout *layout) {
-  int64_t dimension = DIM, trees[DIM], periodic[DIM];
+  int64_t format = FORMAT, dimension = DIM, trees[DIM], periodic[DIM];
   for (int d = 0; d < DIM; d++) {
     trees[d] = layout->trees[d];
     periodic[d] = layout->periodic[d];
   }
+  hdf5_write_integer(file, "/", "format", 1, &format);
   hdf5_write_integer(file, "/", "dimension", 1, &dimension);
   hdf5_write_integer(file, "/", "trees", DIM, trees);
   hdf5_write_integer(file, "/", "periodic", DIM, periodic);
@@ -111,7 +123,7 @@ void checkpoint_write(const char *path, const struct mesh *mesh,
   char draft[PATH_LENGTH];
   int length = snprintf(draft, sizeof draft, "%s.tmp", path);
   CHECK(length < PATH_LENGTH, "path '%s' is too long", path);
-  struct hdf5_file *file = hdf5_create(mesh->comm, draft);
+  struct hdf5_file *file = hdf5_create(mesh->comm, draft, SEAL_LENGTH);
   output_write_heading(file, parameters);
   write_layout(file, forest_layout(mesh->forest));
   write_forest(file, mesh->forest);
@@ -119,13 +131,41 @@ void checkpoint_write(const char *path, const struct mesh *mesh,
   hdf5_write_group(file, "fields");
   for (int k = 0; k < fields->n; k++)
     if (fields->field[k]->restart) write_field(file, mesh, fields->field[k]);
-  hdf5_close(file, true);
-  if (mesh->rank == 0 && rename(draft, path) != 0)
-    FATAL("cannot rename '%s' to '%s': %s", draft, path, strerror(errno));
+  hdf5_close(file, false);
+  seal_write(mesh->comm, draft, FORMAT);
+  if (mesh->rank == 0) {
+    if (rename(draft, path) != 0) disk_fail(path, errno);
+    disk_sync_directory(path);
+  }
   MPI_CHECK(MPI_Barrier(mesh->comm));
 }
 
 /* Read */
+
+/* Refuses a file that is not to the bit what was written, before HDF5, which
+ * trusts what it reads, sees it. */
+static void check_seal(MPI_Comm comm, const char *path) {
+  struct seal_report report;
+  seal_check(comm, path, FORMAT, &report);
+  if (report.verdict == SEAL_UNSEALED)
+    USER_ERROR(
+        "'%s' was written by an older version of talus, whose checkpoints have "
+        "no seal; go on with the version that wrote it (run.log names it), or "
+        "start afresh without --restart",
+        path);
+  if (report.verdict == SEAL_OTHER_FORMAT)
+    USER_ERROR(
+        "'%s' was written by talus %s, %s version, in format %d, and this "
+        "version reads format %d; go on with the version that wrote it, or "
+        "start afresh without --restart",
+        path, report.version, report.format < FORMAT ? "an older" : "a newer",
+        report.format, FORMAT);
+  if (report.verdict != SEAL_SOUND)
+    USER_ERROR(
+        "'%s' is missing or damaged (%s), there is nothing to go on from; take "
+        "another copy of it, or start afresh without --restart",
+        path, report.reason);
+}
 
 static void refuse_other_box(const char *path, const char *what) {
   USER_ERROR(
@@ -158,12 +198,9 @@ static void compare_layout(struct hdf5_file *file, const char *path,
 
 struct checkpoint *checkpoint_open(MPI_Comm comm, const char *path,
                                    const struct forest_layout *layout) {
+  check_seal(comm, path);
   struct hdf5_file *file = hdf5_open(comm, path);
-  if (file == NULL)
-    USER_ERROR(
-        "'%s' is missing or damaged, there is nothing to go on from; start "
-        "afresh without --restart",
-        path);
+  if (file == NULL) USER_ERROR("'%s' is no checkpoint of talus", path);
   compare_layout(file, path, layout);
   struct checkpoint *checkpoint = MEM_NEW(struct checkpoint, 1);
   checkpoint->file = file;
@@ -183,12 +220,16 @@ void checkpoint_close(struct checkpoint *checkpoint) {
 static void share_leaves(struct checkpoint *checkpoint, MPI_Comm comm,
                          int64_t all, int64_t *first, int64_t *n) {
   int rank, nranks, columns = 0;
-  int64_t old = 0;
+  int64_t old = 0, least;
   MPI_CHECK(MPI_Comm_rank(comm, &rank));
   MPI_CHECK(MPI_Comm_size(comm, &nranks));
   if (hdf5_read_size(checkpoint->file, "partition", &old, &columns) &&
       old == nranks) {
     hdf5_read(checkpoint->file, "partition", HDF5_INT64, rank, 1, 1, n);
+    MPI_CHECK(MPI_Allreduce(n, &least, 1, MPI_INT64_T, MPI_MIN, comm));
+    if (least < 0)
+      USER_ERROR("'%s' is damaged: partition = %" PRId64 " leaves on some rank",
+                 checkpoint->path, least);
     MPI_CHECK(MPI_Scan(n, first, 1, MPI_INT64_T, MPI_SUM, comm));
     *first -= *n;
   } else {
@@ -202,7 +243,8 @@ struct forest *checkpoint_forest(struct checkpoint *checkpoint,
   MPI_Comm comm = hdf5_comm(checkpoint->file);
   int64_t all = 0, first = 0, n = 0, sum = 0;
   int columns = 0;
-  if (!hdf5_read_size(checkpoint->file, "levels", &all, &columns))
+  if (!hdf5_read_size(checkpoint->file, "levels", &all, &columns) ||
+      columns != 1)
     USER_ERROR("'%s' holds no leaves", checkpoint->path);
   share_leaves(checkpoint, comm, all, &first, &n);
   MPI_CHECK(MPI_Allreduce(&n, &sum, 1, MPI_INT64_T, MPI_SUM, comm));
@@ -233,6 +275,55 @@ static void faces_from_sides(const struct mesh *mesh, const double *side,
   mesh_fill_faces(mesh, 1, &v);
 }
 
+/* The values that a field may have. */
+struct range {
+  double low, high;
+};
+
+static bool is_within(struct range range, double value) {
+  return isfinite(value) && value >= range.low && value <= range.high;
+}
+
+/* Refuses the value of a field in a leaf that this rank owns if `first` says
+ * so. Collective; does not return. */
+static _Noreturn void refuse_value(struct checkpoint *checkpoint,
+                                   const struct mesh *mesh,
+                                   const struct field *field, int first,
+                                   int32_t leaf, double value) {
+  double found[4] = {value}; /* and its place */
+  char place[64];
+  if (first == mesh->rank)
+    for (int d = 0; d < DIM; d++) found[1 + d] = mesh->x[leaf][d];
+  MPI_CHECK(MPI_Bcast(found, 4, MPI_DOUBLE, first, mesh->comm));
+  int n = snprintf(place, sizeof place, "%g, %g", found[1], found[2]);
+  if (DIM == 3) snprintf(place + n, sizeof place - (size_t)n, ", %g", found[3]);
+  USER_ERROR(
+      "'%s' is damaged or was edited: %s (%s) = %g in the leaf at (%s), a "
+      "finite number%s is needed; take another copy of it, or start afresh "
+      "without --restart",
+      checkpoint->path, field->name, field->title, found[0], place,
+      field->remap == REMAP_VOF ? " from 0 to 1" : "");
+}
+
+/* Refuses values v [nleaves][columns] that no run can have written. */
+static void check_values(struct checkpoint *checkpoint, const struct mesh *mesh,
+                         const struct field *field, int columns,
+                         const double *v) {
+  const struct range range =
+      field->remap == REMAP_VOF
+          ? (struct range){-FRACTION_SLACK, 1 + FRACTION_SLACK}
+          : (struct range){-DBL_MAX, DBL_MAX};
+  const int64_t n = (int64_t)mesh->nleaves * columns;
+  int64_t k = 0;
+  while (k < n && is_within(range, v[k])) k++;
+  int first = k < n ? mesh->rank : mesh->nranks;
+  MPI_CHECK(
+      MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, mesh->comm));
+  if (first < mesh->nranks)
+    refuse_value(checkpoint, mesh, field, first, (int32_t)(k / columns),
+                 k < n ? v[k] : 0);
+}
+
 static void read_field(struct checkpoint *checkpoint, const struct mesh *mesh,
                        struct field *field) {
   char path[NAME_LENGTH];
@@ -248,11 +339,13 @@ static void read_field(struct checkpoint *checkpoint, const struct mesh *mesh,
   if (field->location == FIELD_CELL) {
     hdf5_read(checkpoint->file, path, HDF5_REAL, first, mesh->nleaves, 1,
               field->v);
+    check_values(checkpoint, mesh, field, 1, field->v);
     return;
   }
   double *side = MEM_NEW(double, (size_t)mesh->nleaves *NFACE);
   hdf5_read(checkpoint->file, path, HDF5_REAL, first, mesh->nleaves, NFACE,
             side);
+  check_values(checkpoint, mesh, field, NFACE, side);
   faces_from_sides(mesh, side, field->v);
   mem_free(side);
 }
@@ -262,6 +355,23 @@ void checkpoint_read_fields(struct checkpoint *checkpoint,
   for (int k = 0; k < fields->n; k++)
     if (fields->field[k]->restart)
       read_field(checkpoint, mesh, fields->field[k]);
+}
+
+/* Refuses a number out of its range. */
+static void check_scalar(const struct checkpoint *checkpoint,
+                         const struct checkpoint_scalar *s) {
+  const bool bounded = s->low != 0 || s->high != 0;
+  const double value = s->real != NULL ? *s->real : (double)*s->integer;
+  if (bounded ? value >= s->low && value <= s->high : isfinite(value)) return;
+  char range[64] = "a finite number";
+  if (bounded && s->high < DBL_MAX)
+    snprintf(range, sizeof range, "a number from %g to %g", s->low, s->high);
+  else if (bounded)
+    snprintf(range, sizeof range, "a finite number of at least %g", s->low);
+  USER_ERROR(
+      "'%s' is damaged or was edited: %s = %.17g, %s is needed; take another "
+      "copy of it, or start afresh without --restart",
+      checkpoint->path, s->name, value, range);
 }
 
 void checkpoint_read_scalars(struct checkpoint *checkpoint, int n,
@@ -275,5 +385,6 @@ void checkpoint_read_scalars(struct checkpoint *checkpoint, int n,
     if (!found)
       USER_ERROR("'%s' has no '%s'; it was written by another version of talus",
                  checkpoint->path, s->name);
+    check_scalar(checkpoint, s);
   }
 }

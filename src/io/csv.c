@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "disk.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 #include "talus/output.h"
@@ -88,8 +89,7 @@ struct csv *csv_open(const char *directory, const char *name,
         csv->path);
   if (error == EACCES || error == EPERM || error == EROFS || error == EISDIR)
     USER_ERROR("cannot write '%s': %s", csv->path, strerror(error));
-  if (error != 0 && base_rank() == 0)
-    FATAL("cannot write '%s': %s", csv->path, strerror(error));
+  if (error != 0 && base_rank() == 0) disk_fail(csv->path, error);
   if (error != 0 && base_size() > 1) MPI_CHECK(MPI_Barrier(MPI_COMM_WORLD));
   return csv;
 }

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "disk.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 
@@ -47,12 +48,21 @@ static const char *find_cause(char words[WORDS_LENGTH]) {
   return begin;
 }
 
+/* The errno whose words these are, among those that advice knows; else 0. */
+static int find_errno(const char *words) {
+  static const int known[] = {ENOSPC, EDQUOT, EFBIG, ENOENT, ESTALE};
+  for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+    if (strcmp(words, strerror(known[k])) == 0) return known[k];
+  return 0;
+}
+
 static int64_t check(const char *path, const char *call, int64_t result) {
   if (result >= 0) return result;
   char words[WORDS_LENGTH] = "no reason given";
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_deepest, words);
-  FATAL("%s: %s (%.*s); is there space left on the disk?", path,
-        find_cause(words), (int)strcspn(call, "("), call);
+  const char *cause = find_cause(words);
+  FATAL("%s: %s (%.*s)%s", path, cause, (int)strcspn(call, "("), call,
+        disk_advice(path, find_errno(cause)));
 }
 
 static hid_t memory_type(enum hdf5_type type) {
@@ -102,16 +112,18 @@ static void reserve(struct hdf5_file *file, hsize_t begin, hsize_t length) {
     int error = posix_fallocate(file->descriptor, (off_t)begin, (off_t)length);
     /* others only say that the file system knows no reservations */
     if (error == ENOSPC || error == EFBIG || error == EDQUOT || error == EIO)
-      FATAL("%s: %s", file->path, strerror(error));
+      FATAL("%s: %s%s", file->path, strerror(error),
+            disk_advice(file->path, error));
   }
   MPI_CHECK(MPI_Barrier(file->comm));
 }
 
-struct hdf5_file *hdf5_create(MPI_Comm comm, const char *path) {
+struct hdf5_file *hdf5_create(MPI_Comm comm, const char *path, size_t head) {
   struct hdf5_file *file = file_new(comm, path);
-  hid_t access = access_properties(file);
-  file->id =
-      H5_CHECK(file, H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access));
+  hid_t access = access_properties(file), layout = H5Pcreate(H5P_FILE_CREATE);
+  H5_CHECK(file, H5Pset_userblock(layout, head));
+  file->id = H5_CHECK(file, H5Fcreate(path, H5F_ACC_TRUNC, layout, access));
+  H5Pclose(layout);
   H5Pclose(access);
   if (file->nranks > 1 && file->rank == 0)
     file->descriptor = open(path, O_RDWR);
@@ -150,7 +162,7 @@ MPI_Comm hdf5_comm(const struct hdf5_file *file) { return file->comm; }
 /* HDF5's own flush leaves the data to the operating system. */
 static void sync_path(const char *path) {
   FILE *f = fopen(path, "r+b");
-  if (f == NULL || fsync(fileno(f)) != 0) FATAL("%s: cannot be synced", path);
+  if (f == NULL || fsync(fileno(f)) != 0) disk_fail(path, errno);
   fclose(f);
 }
 
@@ -270,8 +282,12 @@ bool hdf5_read_size(struct hdf5_file *file, const char *name, int64_t *rows,
   hid_t set = H5Dopen2(file->id, name, H5P_DEFAULT);
   if (set < 0) return false;
   hid_t space = H5_CHECK(file, H5Dget_space(set));
+  hid_t type = H5_CHECK(file, H5Dget_type(set));
+  const H5T_class_t kind = H5Tget_class(type);
+  H5_CHECK(file, H5Tclose(type));
   hsize_t size[2] = {0, 1};
-  bool good = H5Sget_simple_extent_ndims(space) <= 2 &&
+  bool good = (kind == H5T_INTEGER || kind == H5T_FLOAT) &&
+              H5Sget_simple_extent_ndims(space) <= 2 &&
               H5Sget_simple_extent_dims(space, size, NULL) >= 1;
   *rows = (int64_t)size[0];
   *columns = (int)size[1];

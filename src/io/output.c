@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "disk.h"
 #include "talus/error.h"
 #include "talus/hdf5_file.h"
 #include "talus/memory.h"
@@ -141,7 +142,7 @@ void output_write_text(const char *directory, const char *name,
   if (base_rank() != 0) return;
   char *path = output_path(directory, name);
   FILE *f = fopen(path, "w");
-  if (f == NULL) FATAL("cannot write '%s': %s", path, strerror(errno));
+  if (f == NULL) disk_fail(path, errno);
   fputs(text, f);
   output_flush(f, path);
   fclose(f);
@@ -195,7 +196,5 @@ char *output_number(double value, char text[32]) {
 }
 
 void output_flush(FILE *f, const char *path) {
-  if (fflush(f) != 0 || ferror(f))
-    FATAL("cannot write '%s': %s; is there space left on the disk?", path,
-          strerror(errno));
+  if (fflush(f) != 0 || ferror(f)) disk_fail(path, errno);
 }

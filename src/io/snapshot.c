@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/snapshot.h"
 
+#include <dirent.h>
 #include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "talus/error.h"
@@ -186,13 +189,47 @@ static void add_to_index(struct snapshots *snapshots, int number) {
   hdf5_close(file, false);
 }
 
+static int compare_numbers(const void *a, const void *b) {
+  const int m = *(const int *)a, n = *(const int *)b;
+  return (m > n) - (m < n);
+}
+
+/* The numbers below `count` of the snapshots that are there, in order, on all
+ * ranks; the caller frees them. The directory is listed, as `count` may be
+ * large and the files few. */
+static int *list_numbers(const char *directory, int count, int *n) {
+  DIR *list = base_rank() == 0 && count > 0 ? opendir(directory) : NULL;
+  int *number = NULL, room = 0;
+  *n = 0;
+  for (struct dirent *entry; list != NULL && (entry = readdir(list));) {
+    char name[NAME_LENGTH];
+    int k;
+    if (sscanf(entry->d_name, "snapshot-%d.h5", &k) != 1 || k < 0) continue;
+    snapshot_name(k, name);
+    if (k >= count || strcmp(name, entry->d_name) != 0) continue;
+    if (*n == room) {
+      room = 2 * room + 64;
+      number = mem_resize(number, (size_t)room, sizeof *number);
+    }
+    number[(*n)++] = k;
+  }
+  if (list != NULL) closedir(list);
+  MPI_CHECK(MPI_Bcast(n, 1, MPI_INT, 0, MPI_COMM_WORLD));
+  number = mem_resize(number, (size_t)*n + 1, sizeof *number);
+  qsort(number, (size_t)*n, sizeof *number, compare_numbers);
+  MPI_CHECK(MPI_Bcast(number, *n, MPI_INT, 0, MPI_COMM_WORLD));
+  return number;
+}
+
 struct snapshots *snapshots_new(const char *directory, int count) {
   struct snapshots *snapshots = MEM_NEW(struct snapshots, 1);
   snapshots->directory = MEM_NEW(char, strlen(directory) + 1);
   strcpy(snapshots->directory, directory);
   snapshots->count = count;
   snapshots->index = xdmf_new();
-  for (int k = 0; k < count; k++) add_to_index(snapshots, k);
+  int n, *number = list_numbers(directory, count, &n);
+  for (int k = 0; k < n; k++) add_to_index(snapshots, number[k]);
+  mem_free(number);
   return snapshots;
 }
 
@@ -220,7 +257,7 @@ void snapshots_write(struct snapshots *snapshots, const struct mesh *mesh,
                      const struct fields *fields,
                      const struct snapshot_heading *heading) {
   char *path = snapshot_path(snapshots, snapshots->count);
-  struct hdf5_file *file = hdf5_create(mesh->comm, path);
+  struct hdf5_file *file = hdf5_create(mesh->comm, path, 0);
   struct xdmf_grid grid = {.narrays = 0};
   describe_fields(fields, &grid);
   output_write_heading(file, heading->parameters);
@@ -232,7 +269,7 @@ void snapshots_write(struct snapshots *snapshots, const struct mesh *mesh,
   for (int k = 0; k < grid.narrays; k++)
     write_array(file, mesh, fields, &grid.array[k]);
   read_grid(file, &grid);
-  hdf5_close(file, false);
+  hdf5_close(file, true); /* checkpoints count it */
   mem_free(path);
 
   snapshot_name(snapshots->count++, grid.file);

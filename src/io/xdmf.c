@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "disk.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 #include "talus/output.h"
@@ -101,12 +102,11 @@ static void replace(const struct xdmf *xdmf, const char *path) {
   char *draft = MEM_NEW(char, size);
   snprintf(draft, size, "%s.tmp", path);
   FILE *f = fopen(draft, "w");
-  if (f == NULL) FATAL("cannot write '%s': %s", draft, strerror(errno));
+  if (f == NULL) disk_fail(draft, errno);
   fprintf(f, "%s%s%s", head, xdmf->text != NULL ? xdmf->text : "", tail);
   output_flush(f, draft);
   fclose(f);
-  if (rename(draft, path) != 0)
-    FATAL("cannot rename '%s' to '%s': %s", draft, path, strerror(errno));
+  if (rename(draft, path) != 0) disk_fail(path, errno);
   mem_free(draft);
 }
 

@@ -47,7 +47,7 @@ START_TEST(rows_of_all_ranks_follow_each_other) {
   double data[16][3];
   for (int i = 0; i < rows; i++)
     for (int k = 0; k < 3; k++) data[i][k] = 100 * rank + 10 * i + k + 1.0 / 3;
-  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path);
+  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path, 0);
   hdf5_write(file, "data", HDF5_REAL, rows, 3, data);
   hdf5_close(file, true);
 
@@ -88,7 +88,7 @@ START_TEST(rows_written_in_pieces_are_all_there) {
   const int64_t n = base_rank() == 2 ? 0 : MOST - 20000 * base_rank();
   int64_t next = 0, all = 0;
   int columns = 0;
-  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path);
+  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path, 0);
   hdf5_write_pieces(file, "data", HDF5_INT64, n, 3, fill_rows, &next);
   hdf5_close(file, false);
   file = hdf5_open(MPI_COMM_WORLD, path);
@@ -109,7 +109,7 @@ START_TEST(attributes_come_back) {
   const char *path = path_of("attributes.h5");
   const double real[2] = {0.1, -1e300}, one = 1.0 / 3;
   const int64_t integer = ((int64_t)1 << 60) + 1;
-  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path);
+  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path, 0);
   output_write_heading(file,
                        "name,value,unit\na,1,\"m\"\na,2\nb,\"x, \"\"y\"\"\"\n");
   hdf5_write_real(file, "/", "two", 2, real);
@@ -142,7 +142,7 @@ END_TEST
 START_TEST(damaged_files_are_not_opened) {
   const char *path = path_of("damaged.h5");
   double zero[64] = {0};
-  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path);
+  struct hdf5_file *file = hdf5_create(MPI_COMM_WORLD, path, 0);
   hdf5_write(file, "data", HDF5_REAL, 64, 1, zero);
   hdf5_close(file, true);
   bool cut = base_rank() != 0 || truncate(path, 700) == 0;
@@ -208,8 +208,8 @@ static void write_one(const char *path, struct forest *forest, double time) {
   struct mesh *mesh = mesh_new(forest);
   struct fields fields = {.n = 0};
   int64_t step = 12;
-  struct checkpoint_scalar scalars[] = {{"time", &time, NULL},
-                                        {"step", NULL, &step}};
+  struct checkpoint_scalar scalars[] = {{"time", &time, NULL, 0, 0},
+                                        {"step", NULL, &step, 0, 0}};
   add_fields(&fields, mesh);
   set_fields(&fields, mesh);
   checkpoint_write(path, mesh, &fields, 2, scalars, "name,value\na,1\n");
@@ -227,8 +227,8 @@ static bool read_one(MPI_Comm comm, const char *path,
   struct fields fields = {.n = 0};
   double time_back = 0;
   int64_t step = 0;
-  struct checkpoint_scalar scalars[] = {{"time", &time_back, NULL},
-                                        {"step", NULL, &step}};
+  struct checkpoint_scalar scalars[] = {{"time", &time_back, NULL, 0, 0},
+                                        {"step", NULL, &step, 0, 0}};
   add_fields(&fields, mesh);
   checkpoint_read_fields(checkpoint, mesh, &fields);
   checkpoint_read_scalars(checkpoint, 2, scalars);
