@@ -8,8 +8,10 @@
 #include <sys/stat.h>
 
 #include "talus/command_line.h"
+#include "talus/csv_row.h"
 #include "talus/error.h"
 #include "talus/hdf5_file.h"
+#include "talus/seal.h"
 
 enum { LENGTH = 4096 };
 
@@ -18,60 +20,82 @@ static bool ends_in(const char *text, const char *end) {
   return n >= m && strcmp(text + n - m, end) == 0;
 }
 
-/* Header, last complete line and number of rows of a csv file. */
-static bool read_csv(const char *path, char header[LENGTH], char last[LENGTH],
-                     long *nrows) {
+/* What of a csv file is told. */
+struct table {
+  struct csv_row header, last; /* the last complete row */
+  long nrows;
+};
+
+/* Reads a csv file, but for a last row that is being written; false if there
+ * is none, or without a header. */
+static bool read_table(const char *path, struct table *table) {
   FILE *f = fopen(path, "r");
+  struct csv_row row = {0};
+  *table = (struct table){0};
   if (f == NULL) return false;
-  char line[LENGTH];
-  *nrows = -1;
-  header[0] = last[0] = '\0';
-  while (fgets(line, sizeof line, f) != NULL) {
-    char *newline = strchr(line, '\n');
-    if (newline == NULL) continue; /* being written, or too long */
-    *newline = '\0';
-    memcpy((*nrows)++ < 0 ? header : last, line, sizeof line);
+  const bool good = csv_row_read(f, &table->header) && table->header.ends;
+  while (csv_row_read(f, &row) && row.ends) {
+    const struct csv_row before = table->last;
+    table->last = row;
+    row = before;
+    table->nrows++;
   }
+  csv_row_free(&row);
   fclose(f);
-  return *nrows >= 0;
+  return good;
 }
 
-/* `column = value` for each cell of a row; plain numbers, so no quotes. */
-static void print_row(char *header, char *row) {
-  while (*header != '\0' && *row != '\0') {
-    size_t n = strcspn(header, ","), m = strcspn(row, ",");
-    printf("  %-20.*s = %.*s\n", (int)n, header, (int)m, row);
-    header += n + (header[n] == ',');
-    row += m + (row[m] == ',');
-  }
+static void free_table(struct table *table) {
+  csv_row_free(&table->header);
+  csv_row_free(&table->last);
+}
+
+/* Prints `column = value` for each cell of the last row. */
+static void print_last(const struct table *table) {
+  for (int k = 0; k < table->header.n && k < table->last.n; k++)
+    printf("  %-20s = %s\n", csv_row_cell(&table->header, k),
+           csv_row_cell(&table->last, k));
 }
 
 static int info_csv(const char *path) {
-  char header[LENGTH], last[LENGTH];
-  long nrows;
-  if (!read_csv(path, header, last, &nrows))
+  struct table table;
+  if (!read_table(path, &table))
     USER_ERROR("%s is no csv file of talus: it has no header line", path);
-  printf("%s: %ld rows of %s\n", path, nrows, header);
-  if (nrows > 0) printf("last row\n");
-  print_row(header, last);
+  printf("%s: %ld rows of ", path, table.nrows);
+  for (int k = 0; k < table.header.n; k++) {
+    if (k > 0) putchar(',');
+    csv_row_write_cell(stdout, csv_row_cell(&table.header, k));
+  }
+  printf("\n%s", table.nrows > 0 ? "last row\n" : "");
+  print_last(&table);
+  free_table(&table);
   return EXIT_DONE;
 }
 
-/* Title and unit of each field that the root names. Collective. */
+/* Prints title and unit of each field that the root names. */
 static void print_fields(struct hdf5_file *file) {
   char list[LENGTH], *rest = list;
   if (!hdf5_read_text(file, "/", "fields", sizeof list, list)) return;
-  if (base_rank() == 0) printf("fields\n");
+  printf("fields\n");
   for (char *name; (name = strtok_r(rest, " ", &rest)) != NULL;) {
     char title[256] = "", unit[64] = "";
     hdf5_read_text(file, name, "title", sizeof title, title);
     hdf5_read_text(file, name, "unit", sizeof unit, unit);
-    if (base_rank() == 0) printf("  %-20s %-8s %s\n", name, unit, title);
+    printf("  %-20s %-8s %s\n", name, unit, title);
   }
 }
 
+/* Refuses a checkpoint that is not what was written: HDF5 trusts its files. */
+static void check_seal(const char *path) {
+  struct seal_report report;
+  seal_check(MPI_COMM_SELF, path, &report);
+  if (report.verdict == SEAL_DAMAGED)
+    USER_ERROR("%s is a damaged checkpoint: %s", path, report.reason);
+}
+
 static int info_hdf5(const char *path) {
-  struct hdf5_file *file = hdf5_open(MPI_COMM_WORLD, path);
+  check_seal(path);
+  struct hdf5_file *file = hdf5_open(MPI_COMM_SELF, path);
   if (file == NULL) USER_ERROR("%s cannot be read as an HDF5 file", path);
   char version[64] = "?";
   double time = 0;
@@ -89,13 +113,11 @@ static int info_hdf5(const char *path) {
   int64_t stored;
   if (hdf5_read_integer(file, "/", "dimension", 1, &stored))
     dimension = (int)stored;
-  if (base_rank() == 0) {
-    printf("%s: a %s of talus %s\n", path, snapshot ? "snapshot" : "checkpoint",
-           version);
-    printf("  %-20s = %d\n  %-20s = %.10g\n  %-20s = %" PRId64
-           "\n  %-20s = %" PRId64 "\n",
-           "dimension", dimension, "time", time, "step", step, "cells", rows);
-  }
+  printf("%s: a %s of talus %s\n", path, snapshot ? "snapshot" : "checkpoint",
+         version);
+  printf("  %-20s = %d\n  %-20s = %.10g\n  %-20s = %" PRId64
+         "\n  %-20s = %" PRId64 "\n",
+         "dimension", dimension, "time", time, "step", step, "cells", rows);
   if (snapshot) print_fields(file);
   hdf5_close(file, false);
   return EXIT_DONE;
@@ -125,53 +147,48 @@ static void print_files(const char *directory) {
     printf("  snapshot-*.h5, %5d      %10.0f kB\n", snapshots, snapshots_size);
 }
 
-/* `key = value  unit` for each row of parameters.csv. */
+/* Prints `key = value` for each row of parameters.csv. */
 static void print_parameters(const char *path) {
   FILE *f = fopen(path, "r");
+  struct csv_row row = {0};
   if (f == NULL) return;
-  char line[LENGTH];
   printf("parameters\n");
-  for (long n = 0; fgets(line, sizeof line, f) != NULL; n++) {
-    line[strcspn(line, "\n")] = '\0';
-    char *comma = strchr(line, ',');
-    if (n == 0 || comma == NULL) continue;
-    *comma = '\0';
-    char *value = comma + 1, *end = value + strcspn(value, ",");
-    if (*value == '"') { /* quoted for the commas in it */
-      end = strchr(++value, '"');
-      if (end == NULL) continue;
-    }
-    *end = '\0';
-    printf("  %-28s = %s\n", line, value);
-  }
+  csv_row_read(f, &row); /* the header */
+  while (csv_row_read(f, &row))
+    printf("  %-28s = %s\n", csv_row_cell(&row, 0), csv_row_cell(&row, 1));
+  csv_row_free(&row);
   fclose(f);
 }
 
 static int info_directory(const char *directory) {
-  char path[LENGTH], header[LENGTH], last[LENGTH];
-  long nrows;
+  char path[LENGTH];
+  struct table table;
   snprintf(path, sizeof path, "%s/series.csv", directory);
-  if (!read_csv(path, header, last, &nrows))
+  if (!read_table(path, &table))
     USER_ERROR("%s holds no series.csv: is it the directory of a run?",
                directory);
-  if (base_rank() != 0) return EXIT_DONE;
-  printf("%s: %ld rows in series.csv, the last\n", directory, nrows);
-  print_row(header, last);
+  printf("%s: %ld rows in series.csv%s\n", directory, table.nrows,
+         table.nrows > 0 ? ", the last" : "");
+  print_last(&table);
+  free_table(&table);
   snprintf(path, sizeof path, "%s/parameters.csv", directory);
   print_parameters(path);
   print_files(directory);
   return EXIT_DONE;
 }
 
+/* Rank 0 alone looks and speaks: others may see another directory, or none. */
 int command_info(int argc, char *argv[]) {
+  if (base_rank() != 0) return EXIT_DONE;
   if (argc != 1) USER_ERROR("say: talus info DIR, or talus info FILE");
   const char *path = argv[0];
   struct stat status;
   if (stat(path, &status) != 0) USER_ERROR("%s: %s", path, strerror(errno));
   if (S_ISDIR(status.st_mode)) return info_directory(path);
+  if (!S_ISREG(status.st_mode))
+    USER_ERROR("%s is neither a file nor a directory", path);
   if (ends_in(path, ".h5")) return info_hdf5(path);
-  if (ends_in(path, ".csv"))
-    return base_rank() == 0 ? info_csv(path) : EXIT_DONE;
+  if (ends_in(path, ".csv")) return info_csv(path);
   USER_ERROR(
       "%s: a directory, .csv or .h5 file is needed; for a case there is "
       "talus check",

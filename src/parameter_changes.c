@@ -2,70 +2,53 @@
 #include "talus/parameter_changes.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "talus/csv_row.h"
 #include "talus/log.h"
 
-enum { FIELD = 1024, LINE = 4 * FIELD };
+enum { KEY, VALUE, UNIT, ORIGIN }; /* cells of a row of parameters.csv */
 
-/* key,value,unit,origin */
-struct row {
-  char field[4][FIELD];
-};
-
-/* One field, without its quotes; returns where the next begins. */
-static const char *read_field(const char *at, char field[FIELD]) {
-  const bool quoted = *at == '"';
-  size_t n = 0;
-  if (quoted) at++;
-  for (; *at != '\0' && *at != '\n'; at++) {
-    if (quoted && *at == '"' && *++at != '"') break;
-    if (!quoted && *at == ',') break;
-    if (n < FIELD - 1) field[n++] = *at;
-  }
-  field[n] = '\0';
-  return *at == ',' ? at + 1 : at;
+static bool find_row(const char *text, const char *key, struct csv_row *row) {
+  bool found = false;
+  FILE *f = fmemopen((char *)(uintptr_t)text, strlen(text), "r");
+  while (f != NULL && !found && csv_row_read(f, row))
+    found = strcmp(csv_row_cell(row, KEY), key) == 0;
+  if (f != NULL) fclose(f);
+  return found;
 }
 
-/* The row that begins at `at`; returns where the next one does. */
-static const char *read_row(const char *at, struct row *row) {
-  for (int k = 0; k < 4; k++) at = read_field(at, row->field[k]);
-  return at + strcspn(at, "\n") + (at[strcspn(at, "\n")] == '\n');
+static bool is_set(const struct csv_row *row) {
+  return strcmp(csv_row_cell(row, ORIGIN), "command line") == 0;
 }
 
-static bool find_row(const char *text, const char *key, struct row *row) {
-  while (*text != '\0') {
-    text = read_row(text, row);
-    if (strcmp(row->field[0], key) == 0) return true;
-  }
-  return false;
+static void say_change(FILE *to, const char *key, const char *is,
+                       const char *was) {
+  if (to != NULL)
+    fprintf(to, "talus: restart with %s = %s (was %s)\n", key, is, was);
+  else
+    log_info("restart with %s = %s (was %s)", key, is, was);
 }
 
-static bool is_set(const struct row *row) {
-  return strcmp(row->field[3], "command line") == 0;
-}
-
-/* One pass over the rows before, with `only_set` those that the user set.
+/* Goes once over the rows before, with `only_set` those that the user set.
  * Returns how many changes were said. */
 static int say(FILE *before, const char *now, bool only_set, FILE *to) {
-  char line[LINE];
+  struct csv_row was = {0}, is = {0};
   int n = 0;
   rewind(before);
-  while (fgets(line, sizeof line, before) != NULL) {
-    struct row was, is;
-    read_row(line, &was);
-    if (!find_row(now, was.field[0], &is)) continue;
-    if (strcmp(was.field[1], is.field[1]) == 0) continue;
+  while (csv_row_read(before, &was)) {
+    const char *key = csv_row_cell(&was, KEY);
+    if (!find_row(now, key, &is)) continue;
+    if (strcmp(csv_row_cell(&was, VALUE), csv_row_cell(&is, VALUE)) == 0)
+      continue;
     if (only_set && !is_set(&was) && !is_set(&is)) continue;
     n++;
-    if (to != NULL)
-      fprintf(to, "talus: restart with %s = %s (was %s)\n", is.field[0],
-              is.field[1], was.field[1]);
-    else
-      log_info("restart with %s = %s (was %s)", is.field[0], is.field[1],
-               was.field[1]);
+    say_change(to, key, csv_row_cell(&is, VALUE), csv_row_cell(&was, VALUE));
   }
+  csv_row_free(&was);
+  csv_row_free(&is);
   return n;
 }
 

@@ -29,16 +29,16 @@ enum { SEAL_LENGTH = 512, SEAL_VERSION_LENGTH = 32 };
 
 enum seal_verdict {
   SEAL_SOUND,
-  SEAL_OTHER_FORMAT, /* sealed, but laid out in another way */
-  SEAL_UNSEALED,     /* a bare HDF5 file, as talus wrote before format 2 */
-  SEAL_BAD           /* missing, unreadable, foreign or damaged */
+  SEAL_DAMAGED,  /* it has a seal, but is not what was sealed */
+  SEAL_UNSEALED, /* a bare HDF5 file, as talus wrote before format 2 */
+  SEAL_NONE      /* missing, unreadable or something else */
 };
 
 struct seal_report {
   enum seal_verdict verdict;
-  int format;                        /* of a sealed file */
+  int format;                        /* of a sound file */
   char version[SEAL_VERSION_LENGTH]; /* of the talus that sealed it */
-  char reason[128]; /* SEAL_BAD: what is wrong, for a message */
+  char reason[128]; /* what is wrong, for a message; "" if SOUND or UNSEALED */
 };
 
 /* Seal a file whose first SEAL_LENGTH bytes are free, and bring it to the disk.
@@ -46,9 +46,8 @@ struct seal_report {
  * the program. */
 void seal_write(MPI_Comm comm, const char *path, int format);
 
-/* Check a file against its seal and against the format that the caller reads.
- * Collective; the report is the same on all ranks. */
-void seal_check(MPI_Comm comm, const char *path, int format,
-                struct seal_report *report);
+/* Check a file against its seal. Collective; the report is the same on all
+ * ranks. */
+void seal_check(MPI_Comm comm, const char *path, struct seal_report *report);
 
 #endif

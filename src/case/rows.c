@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "case_file.h"
+#include "talus/csv_row.h"
 #include "talus/memory.h"
 
 char *text_copy(const char *text) {
@@ -83,19 +84,6 @@ void case_print(const struct case_file *file, FILE *f) {
   }
 }
 
-static void write_quoted(const char *text, FILE *f) {
-  if (strpbrk(text, ",\"\r\n") == NULL) {
-    fputs(text, f);
-    return;
-  }
-  putc('"', f);
-  for (; *text != '\0'; text++) {
-    if (*text == '"') putc('"', f);
-    putc(*text, f);
-  }
-  putc('"', f);
-}
-
 void case_write_parameters(const struct case_file *file, FILE *f) {
   fputs("key,value,unit,origin\n", f);
   for (int i = 0; i < file->nrows; i++) {
@@ -103,7 +91,7 @@ void case_write_parameters(const struct case_file *file, FILE *f) {
     const char *const fields[] = {row->key, row->value, row->unit, row->origin};
     for (int k = 0; k < 4; k++) {
       if (k > 0) putc(',', f);
-      write_quoted(fields[k], f);
+      csv_row_write_cell(f, fields[k]);
     }
     putc('\n', f);
   }

@@ -146,25 +146,25 @@ void checkpoint_write(const char *path, const struct mesh *mesh,
  * trusts what it reads, sees it. */
 static void check_seal(MPI_Comm comm, const char *path) {
   struct seal_report report;
-  seal_check(comm, path, FORMAT, &report);
+  seal_check(comm, path, &report);
   if (report.verdict == SEAL_UNSEALED)
     USER_ERROR(
         "'%s' was written by an older version of talus, whose checkpoints have "
         "no seal; go on with the version that wrote it (run.log names it), or "
         "start afresh without --restart",
         path);
-  if (report.verdict == SEAL_OTHER_FORMAT)
+  if (report.verdict != SEAL_SOUND)
+    USER_ERROR(
+        "'%s' is missing or damaged (%s), there is nothing to go on from; take "
+        "another copy of it, or start afresh without --restart",
+        path, report.reason);
+  if (report.format != FORMAT)
     USER_ERROR(
         "'%s' was written by talus %s, %s version, in format %d, and this "
         "version reads format %d; go on with the version that wrote it, or "
         "start afresh without --restart",
         path, report.version, report.format < FORMAT ? "an older" : "a newer",
         report.format, FORMAT);
-  if (report.verdict != SEAL_SOUND)
-    USER_ERROR(
-        "'%s' is missing or damaged (%s), there is nothing to go on from; take "
-        "another copy of it, or start afresh without --restart",
-        path, report.reason);
 }
 
 static void refuse_other_box(const char *path, const char *what) {

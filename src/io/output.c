@@ -2,12 +2,14 @@
 #include "talus/output.h"
 
 #include <errno.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "disk.h"
+#include "talus/csv_row.h"
 #include "talus/error.h"
 #include "talus/hdf5_file.h"
 #include "talus/memory.h"
@@ -76,6 +78,19 @@ void output_make_directory(const char *directory) {
   int error = base_rank() == 0 ? make_directories(directory) : 0;
   broadcast(&error, sizeof error);
   refuse_directory(directory, error);
+}
+
+bool output_holds_tables(const char *directory) {
+  static const char *const name[] = {"series.csv", "profile.csv",
+                                     "parameters.csv", "run.log"};
+  bool found = false;
+  for (int k = 0; k < 4 && base_rank() == 0; k++) {
+    char *path = output_path(directory, name[k]);
+    found = found || access(path, F_OK) == 0;
+    mem_free(path);
+  }
+  broadcast(&found, sizeof found);
+  return found;
 }
 
 char *output_path(const char *directory, const char *name) {
@@ -149,42 +164,24 @@ void output_write_text(const char *directory, const char *name,
   mem_free(path);
 }
 
-/* Next cell of a csv line, quotes removed, into `cell`; returns what is
- * left. */
-static const char *read_cell(const char *line, size_t size, char *cell) {
-  bool quoted = false;
-  size_t n = 0;
-  for (; *line != '\0' && *line != '\n' && (quoted || *line != ','); line++) {
-    if (*line == '"') {
-      bool twice = quoted && line[1] == '"';
-      if (!twice) {
-        quoted = !quoted;
-        continue;
-      }
-      line++;
-    }
-    if (n + 1 < size && *line != '\r') cell[n++] = *line;
-  }
-  cell[n] = '\0';
-  return *line == ',' ? line + 1 : line;
-}
-
 void output_write_heading(struct hdf5_file *file, const char *parameters) {
-  char name[128], value[8192];
+  struct csv_row row = {0};
   hdf5_write_text(file, "/", "version", TALUS_VERSION);
   hdf5_write_group(file, "parameters");
-  for (const char *line = parameters; *line != '\0';) {
-    const char *rest = read_cell(line, sizeof name, name);
-    rest = read_cell(rest, sizeof value, value);
-    /* not the header, and of two lines with one name the first */
+  if (*parameters == '\0') return;
+  FILE *f = fmemopen((char *)(uintptr_t)parameters, strlen(parameters), "r");
+  if (f == NULL) FATAL("no memory for the list of parameters");
+  csv_row_read(f, &row); /* the header */
+  while (csv_row_read(f, &row)) {
     char known[2];
-    if (line != parameters && name[0] != '\0' &&
+    const char *name = csv_row_cell(&row, 0);
+    /* of two rows with one name the first */
+    if (*name != '\0' &&
         !hdf5_read_text(file, "parameters", name, sizeof known, known))
-      hdf5_write_text(file, "parameters", name, value);
-    line = strchr(rest, '\n');
-    if (line == NULL) break;
-    line++;
+      hdf5_write_text(file, "parameters", name, csv_row_cell(&row, 1));
   }
+  csv_row_free(&row);
+  fclose(f);
 }
 
 char *output_number(double value, char text[32]) {

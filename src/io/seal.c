@@ -164,13 +164,16 @@ static bool read_head(const char *path, char block[SEAL_LENGTH],
 }
 
 /* Judges the head of a file by itself; SEAL_SOUND if the rest must decide. */
-static void judge_head(const char *path, int format, struct seal *seal,
+static void judge_head(const char *path, struct seal *seal,
                        struct seal_report *report) {
+  static const char first[] = "talus checkpoint\n";
   static const char hdf5[8] = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   char block[SEAL_LENGTH];
   int64_t length = 0;
-  report->verdict = SEAL_BAD;
+  report->verdict = SEAL_NONE;
   if (!read_head(path, block, &length, report)) return;
+  if (strncmp(block, first, sizeof first - 1) == 0)
+    report->verdict = SEAL_DAMAGED;
   if (memcmp(block, hdf5, sizeof hdf5) == 0) {
     report->verdict = SEAL_UNSEALED;
   } else if (!read_seal(block, seal)) {
@@ -180,26 +183,25 @@ static void judge_head(const char *path, int format, struct seal *seal,
              "it has %" PRId64 " bytes, %" PRId64 " were written", length,
              seal->length);
   } else {
-    report->verdict = seal->format == format ? SEAL_SOUND : SEAL_OTHER_FORMAT;
+    report->verdict = SEAL_SOUND;
     report->format = seal->format;
     strcpy(report->version, seal->version);
   }
 }
 
-void seal_check(MPI_Comm comm, const char *path, int format,
-                struct seal_report *report) {
+void seal_check(MPI_Comm comm, const char *path, struct seal_report *report) {
   struct seal seal = {.length = SEAL_LENGTH};
   uint32_t sum = 0;
   int rank;
   MPI_CHECK(MPI_Comm_rank(comm, &rank));
   memset(report, 0, sizeof *report);
-  if (rank == 0) judge_head(path, format, &seal, report);
+  if (rank == 0) judge_head(path, &seal, report);
   MPI_CHECK(MPI_Bcast(report, sizeof *report, MPI_BYTE, 0, comm));
   MPI_CHECK(MPI_Bcast(&seal, sizeof seal, MPI_BYTE, 0, comm));
   if (report->verdict != SEAL_SOUND) return;
   const int error = add_up_shares(comm, path, seal.length, &sum);
   if (error == 0 && sum == seal.checksum) return;
-  report->verdict = SEAL_BAD;
+  report->verdict = SEAL_DAMAGED;
   if (error != 0)
     snprintf(report->reason, sizeof report->reason, "some rank reads: %s",
              strerror(error));
