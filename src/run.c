@@ -53,7 +53,8 @@ struct run {
   char *parameters; /* csv text */
   char *checkpoint_path;
   bool checkpoint_written; /* there is one of this run */
-  double wall_checkpoint;  /* when the last one was written */
+  bool tables;            /* of before the restart are there, to be continued */
+  double wall_checkpoint; /* when the last one was written */
   struct run_state before; /* when this invocation began */
   double wall_begin;       /* then */
   int64_t first_step;      /* the step then */
@@ -202,7 +203,9 @@ static void write_output(struct run *run) {
 static void write_checkpoint(struct run *run) {
   double begin = MPI_Wtime();
   struct run_state state = {.wall_seconds = wall_seconds(run),
-                            .snapshots = snapshots_count(run->snapshots)};
+                            .snapshots = snapshots_count(run->snapshots),
+                            .series = series_sync(run->series),
+                            .profile = profile_sync(run->profile)};
   run_state_write(run->checkpoint_path, run->sim, &state, run->parameters);
   run->checkpoint_written = true;
   run->wall_checkpoint = lap(run, TIME_CHECKPOINT, begin);
@@ -244,14 +247,26 @@ static void replace_old_run(const struct run *run) {
   output_remove_run(directory);
 }
 
+/* Are all rows there that were written before the checkpoint? One that was
+ * copied without them begins new tables. */
+static void check_tables(struct run *run) {
+  const char *directory = run->options->directory;
+  if (!run->options->restart) return;
+  run->tables = output_holds_tables(directory);
+  if (!run->tables) return;
+  series_check(directory, &run->before.series, run->sim->step,
+               run->params->series_every);
+  profile_check(directory, &run->before.profile, run->sim->time);
+}
+
 static void open_files(struct run *run) {
   const struct simulation *sim = run->sim;
   const char *directory = run->options->directory;
-  bool keep = run->options->restart;
+  const struct run_state *before = &run->before;
   output_make_directory(directory);
   run->progress =
       progress_new(sim->time, run->params->stop, run->options->quiet);
-  if (keep)
+  if (run->options->restart)
     output_remove_snapshots(directory, (int)run->before.snapshots);
   else
     replace_old_run(run);
@@ -260,14 +275,14 @@ static void open_files(struct run *run) {
   mem_free(path);
   compare_parameters(run);
   output_write_text(directory, "parameters.csv", run->parameters);
-  /* the last digits of a time may have been lost on the way */
-  double last = sim->time + 1e-12 * fabs(run->params->stop);
-  run->series = series_open(directory, keep, sim->step);
-  run->profile = profile_open(directory, keep, last);
+  run->series = series_open(directory, run->tables ? &before->series : NULL);
+  run->profile = profile_open(directory, run->tables ? &before->profile : NULL);
   run->snapshots = snapshots_new(directory, (int)run->before.snapshots);
 }
 
 static void say_begin(const struct run *run) {
+  static const char *const alone =
+      "the checkpoint stands alone: series.csv and profile.csv begin here";
   const struct simulation *sim = run->sim;
   char date[64] = "";
   time_t now = time(NULL);
@@ -281,6 +296,9 @@ static void say_begin(const struct run *run) {
   progress_say(run->progress, "%s: %" PRId64 " cells on %d rank%s, to time %g",
                run->params->name, forest_nleaves_global(sim->forest),
                base_size(), base_size() == 1 ? "" : "s", run->params->stop);
+  if (!run->options->restart || run->tables) return;
+  log_info("%s", alone);
+  progress_say(run->progress, "%s", alone);
 }
 
 static struct run *run_new(const struct params *params,
@@ -298,6 +316,7 @@ static struct run *run_new(const struct params *params,
   run->sim = options->restart
                  ? run_state_read(run->checkpoint_path, params, &run->before)
                  : simulation_new(params);
+  check_tables(run);
   open_files(run);
   run->first_step = run->sim->step;
   run->wall_begin = run->wall_checkpoint = lap(run, TIME_START, begin);

@@ -2,7 +2,11 @@
 /* csv files that grow with the run: a header line, then rows.
  *
  * Rank 0 writes; on the other ranks the functions do nothing. Every row is on
- * its way to the disk when it is complete. */
+ * its way to the disk when it is complete.
+ *
+ * A checkpoint keeps how far each file had come (struct csv_mark), so that a
+ * restart knows whether all rows before it are there, to the last character;
+ * those after it are repeated. */
 #ifndef TALUS_CSV_H
 #define TALUS_CSV_H
 
@@ -11,13 +15,33 @@
 
 struct csv;
 
-/* Open directory/name. Afresh, or (`keep`) after the rows that are there, of
- * which only those are kept whose first column is at most `last`: a run that
- * goes on from a checkpoint repeats what came after it. The file is replaced
- * as a whole, and only if its header is the one we would write; else
- * USER_ERROR. Collective. */
+/* How far a file has come. */
+struct csv_mark {
+  int64_t rows;     /* after the header */
+  int64_t checksum; /* crc32 of these rows, ends of lines and all */
+};
+
+/* What a file is to hold, for csv_check. */
+struct csv_expected {
+  const char *name, *header;
+  struct csv_mark mark;
+  double last;   /* first column of the last row at most */
+  int64_t every; /* the first column is a step, a multiple of this but in the
+                    last row; 0: it is something else */
+};
+
+/* USER_ERROR, which says what is missing, unless directory/name has the header
+ * and begins with the rows of the mark. Changes nothing. Collective. */
+void csv_check(const char *directory, const struct csv_expected *expected);
+
+/* Open directory/name: afresh, or (`kept` != NULL) after the rows of that mark,
+ * which csv_check has found; rows after them are dropped. The file is replaced
+ * as a whole. Collective; USER_ERROR if it is not to be had. */
 struct csv *csv_open(const char *directory, const char *name,
-                     const char *header, bool keep, double last);
+                     const char *header, const struct csv_mark *kept);
+/* Bring all rows to the disk; returns how far the file has come, on all ranks.
+ * Collective. */
+struct csv_mark csv_sync(struct csv *csv);
 void csv_close(struct csv *csv);
 
 /* Cells of a row: numbers as they read back exactly (csv_real), to 12 digits

@@ -7,14 +7,20 @@
 #ifndef TALUS_PROFILE_H
 #define TALUS_PROFILE_H
 
-#include <stdbool.h>
+#include "talus/csv.h"
 
 struct profile;
 
-/* Open directory/profile.csv; with `keep` outlines up to `last_time` stay.
+/* USER_ERROR unless directory/profile.csv has the rows of the mark, none of
+ * them after `last_time`. Collective. */
+void profile_check(const char *directory, const struct csv_mark *mark,
+                   double last_time);
+/* Open directory/profile.csv: afresh, or after the rows of `kept`, if not NULL.
  * Collective. */
-struct profile *profile_open(const char *directory, bool keep,
-                             double last_time);
+struct profile *profile_open(const char *directory,
+                             const struct csv_mark *kept);
+/* csv_sync. */
+struct csv_mark profile_sync(struct profile *profile);
 /* Add the outline at a time: n[0] n[1] columns (n[1] == 1 in 2D) with centres
  * first[d] + i spacing and height [n[1]][n[0]], m. Rank 0 writes. */
 void profile_write(struct profile *profile, double time, const int n[2],

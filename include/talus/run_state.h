@@ -6,12 +6,15 @@
 
 #include <stdint.h>
 
+#include "talus/csv.h"
+
 struct params;
 struct simulation;
 
 struct run_state {
   double wall_seconds; /* since the first step, over all invocations */
   int64_t snapshots;   /* written so far */
+  struct csv_mark series, profile; /* how far the tables have come */
 };
 
 /* Write the checkpoint (checkpoint.h). Collective. */

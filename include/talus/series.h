@@ -3,8 +3,9 @@
 #ifndef TALUS_SERIES_H
 #define TALUS_SERIES_H
 
-#include <stdbool.h>
 #include <stdint.h>
+
+#include "talus/csv.h"
 
 /* A row, in the order and under the names of the columns. */
 struct series_row {
@@ -30,9 +31,16 @@ struct series_row {
 
 struct series;
 
-/* Open directory/series.csv; with `keep` rows up to `last_step` stay.
+/* USER_ERROR unless directory/series.csv has the rows of the mark, which was
+ * made after `last_step`; `every` of params.h serves the message. Collective.
+ */
+void series_check(const char *directory, const struct csv_mark *mark,
+                  int64_t last_step, int every);
+/* Open directory/series.csv: afresh, or after the rows of `kept`, if not NULL.
  * Collective. */
-struct series *series_open(const char *directory, bool keep, int64_t last_step);
+struct series *series_open(const char *directory, const struct csv_mark *kept);
+/* csv_sync. */
+struct csv_mark series_sync(struct series *series);
 /* Add a row; the values of rank 0 count. */
 void series_write(struct series *series, const struct series_row *row);
 void series_close(struct series *series);

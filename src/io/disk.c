@@ -46,6 +46,10 @@ _Noreturn void disk_fail(const char *path, int error) {
         disk_advice(path, error));
 }
 
+int disk_sync_error(int error) {
+  return error == EINVAL || error == EROFS || error == ENOSYS ? 0 : error;
+}
+
 void disk_sync_directory(const char *file) {
   char *path = directory_of(file);
   const int directory = open(path, O_RDONLY);

@@ -11,8 +11,11 @@ const char *disk_advice(const char *path, int error);
 /* Ends the program (FATAL): `path` cannot be written, for this errno. */
 _Noreturn void disk_fail(const char *path, int error);
 
-/* Brings a directory to the disk, so that the names in it last. What a file
- * system cannot do is passed over. */
+/* What an errno of fsync is worth: 0 for a file system that cannot sync. */
+int disk_sync_error(int error);
+
+/* Brings the directory of a file to the disk, so that the names in it last.
+ * What a file system cannot do is passed over. */
 void disk_sync_directory(const char *file);
 
 #endif

@@ -7,17 +7,30 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 
+static const char name[] = "profile.csv";
+static const char *const header =
+    DIM == 2 ? "time,x,height" : "time,x,y,height";
+
 struct profile {
   struct csv *csv;
 };
 
-struct profile *profile_open(const char *directory, bool keep,
-                             double last_time) {
+void profile_check(const char *directory, const struct csv_mark *mark,
+                   double last_time) {
+  const struct csv_expected expected = {
+      .name = name, .header = header, .mark = *mark, .last = last_time};
+  csv_check(directory, &expected);
+}
+
+struct profile *profile_open(const char *directory,
+                             const struct csv_mark *kept) {
   struct profile *profile = MEM_NEW(struct profile, 1);
-  profile->csv =
-      csv_open(directory, "profile.csv",
-               DIM == 2 ? "time,x,height" : "time,x,y,height", keep, last_time);
+  profile->csv = csv_open(directory, name, header, kept);
   return profile;
+}
+
+struct csv_mark profile_sync(struct profile *profile) {
+  return csv_sync(profile->csv);
 }
 
 /* Whether column (i, j) or one beside it has some height. */

@@ -8,18 +8,31 @@ struct series {
   struct csv *csv;
 };
 
+static const char name[] = "series.csv";
 static const char header[] =
     "step,time,dt,cells,front,height,volume,kinetic,potential,dissipated,"
     "max_speed,pressure_iterations,viscous_iterations,wall_seconds,droplets,"
     "droplet_volume,numerical,divergence_volume,pressure_residual,"
     "viscous_residual,mean_shear_rate,repeat_change";
 
-struct series *series_open(const char *directory, bool keep,
-                           int64_t last_step) {
+void series_check(const char *directory, const struct csv_mark *mark,
+                  int64_t last_step, int every) {
+  const struct csv_expected expected = {.name = name,
+                                        .header = header,
+                                        .mark = *mark,
+                                        .last = (double)last_step,
+                                        .every = every > 1 ? every : 1};
+  csv_check(directory, &expected);
+}
+
+struct series *series_open(const char *directory, const struct csv_mark *kept) {
   struct series *series = MEM_NEW(struct series, 1);
-  series->csv =
-      csv_open(directory, "series.csv", header, keep, (double)last_step);
+  series->csv = csv_open(directory, name, header, kept);
   return series;
+}
+
+struct csv_mark series_sync(struct series *series) {
+  return csv_sync(series->csv);
 }
 
 void series_write(struct series *series, const struct series_row *row) {

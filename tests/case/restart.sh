@@ -145,6 +145,40 @@ cp parts-1/checkpoint.h5 kept/
 sed -i '1s/.*/step,other/' kept/series.csv
 refused "other columns" 1 talus2d run $column -o kept --restart
 
+# Rows that are missing before the checkpoint, or are not as they were
+# lacks PATTERN RANKS: of kept/, which is as it was after that
+lacks() {
+  cp -r kept before
+  refused "$1" "$2" talus2d run $column -o kept --restart
+  diff -r before kept > output || complain "$1: a file was touched"
+  rm -r before kept
+  cp -r parts-1 kept
+}
+rm -r kept
+cp -r parts-1 kept
+sed -i '5,7d;9d' kept/series.csv
+lacks 'it lacks 4 of the .* rows up to step .*: steps 3 to 5, 7;' 1
+sed -i '2d' kept/series.csv
+lacks 'it lacks 1 of the .*: step 0;' 2
+head -c 700 parts-1/series.csv > kept/series.csv
+lacks 'it lacks .*: steps [0-9]* to [0-9]*;' 1
+truncate -s -3 kept/series.csv
+lacks 'it lacks 1 of .*: step [0-9]*;' 1
+sed -i '4s/,0/,1/' kept/series.csv
+lacks 'not as written' 1
+sed -i '3d' kept/profile.csv
+lacks 'profile.csv.*it lacks 1 of the .* rows up to time 2;' 1
+rm kept/series.csv
+lacks 'series.csv.*No such file' 1
+# A checkpoint alone may be gone on from.
+rm -rf kept/*
+cp saved kept/checkpoint.h5
+must 1 talus2d run $column -o kept --restart --max-steps 2
+grep -q "stands alone: series.csv" output || complain "no word of new tables"
+sed -n '2,3s/,.*//p' kept/series.csv | tr '\n' ' ' > output
+[ "$(cat output)" = "8 9 " ] || complain "other steps after a lone checkpoint"
+must 1 talus2d run $column -o kept --quiet --restart
+
 # A disk that takes no more: status 4, the words of the system, and the last
 # checkpoint is whole. A limit on the size of files does for a full disk.
 must 1 talus2d run $column -o full --quiet --max-steps 3

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of csv files of a run that goes on: are they all there, and which are
+ * not? Nothing here is collective. */
+#ifndef TALUS_CSV_ROWS_H
+#define TALUS_CSV_ROWS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "talus/csv.h"
+
+/* Reads the header, which must be this one. */
+bool csv_rows_read_header(FILE *f, const char *header);
+
+/* Copies the rows of the mark from `old`, past its header, to `new`, which may
+ * be NULL; false unless they are those that the mark was made of. */
+bool csv_rows_copy(FILE *old, FILE *new, const struct csv_mark *mark);
+
+/* Adds a row, with its end of line, to a mark. */
+void csv_rows_add(struct csv_mark *mark, const char *row, size_t length);
+
+/* Says what differs in the rows of `f`, past its header, from those expected;
+ * part of a sentence, in `text` [size]. */
+void csv_rows_describe(FILE *f, const struct csv_expected *expected,
+                       size_t size, char *text);
+
+#endif
