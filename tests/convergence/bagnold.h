@@ -21,10 +21,12 @@ static inline double bagnold_inertial(double slope) {
   return 0.3 * (t - 0.38) / (0.38 + 0.26 - t);
 }
 
+/* Shear rate and speed. */
+static inline double bagnold_rate(double slope, double y) {
+  return bagnold_inertial(slope) / 0.04 * sqrt(cos(slope) * fmax(1 - y, 0));
+}
 static inline double bagnold_exact(double slope, double y) {
-  const double surface =
-      2. / 3 * bagnold_inertial(slope) / 0.04 * sqrt(cos(slope));
-  return surface * (1 - pow(1 - y, 1.5));
+  return 2. / 3 * bagnold_rate(slope, 0) * (1 - pow(1 - y, 1.5));
 }
 
 /* Error of u in every leaf, in sim->frozen, which is scratch. */
