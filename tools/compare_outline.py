@@ -9,7 +9,8 @@ symmetric difference  int |h - s r| dx / int h dx,  where the heights r of the
 reference are scaled by the factor s = int h dx / int r dx (x is left alone),
 and then the mean over the times after the start. SCALE is one unit of the
 reference's time in units of the run's: a number or sqrt(number); without it
-sqrt(a), where a is the parameter of that name.
+the parameter `reference_time`, or else sqrt(a), where a is the parameter of
+that name.
 """
 import argparse
 import json

@@ -146,7 +146,8 @@ def without_repeat(profiles, part=0.03):
 
 class Reference:
     """Outlines to compare with: a csv file with lines of comment (#), a header
-    `x,t=0.66,...` and a row per x."""
+    `x,t=0.66,...` and a row per x; or a header `time,x,height`, the first under
+    any name, and a row per point, heights 0 where there is none."""
 
     def __init__(self, path):
         self.name = pathlib.Path(path).stem.replace("_", " ")
@@ -155,14 +156,21 @@ class Reference:
         self.comments = [s[1:].strip() for s in lines if s.startswith("#")]
         rows = list(csv.reader(s for s in lines
                                if s.strip() and not s.startswith("#")))
-        self.times = [float(re.sub(r"^t\s*=\s*", "", s)) for s in rows[0][1:]]
         data = np.array(rows[1:], dtype=float)
-        self.x, self.heights = data[:, 0], data[:, 1:].T
+        if [s.strip() for s in rows[0][1:]] == ["x", "height"]:
+            self.times, at = np.unique(data[:, 0], return_inverse=True)
+            self.x, column = np.unique(data[:, 1], return_inverse=True)
+            self.heights = np.zeros((len(self.times), len(self.x)))
+            self.heights[at, column] = data[:, 2]
+        else:
+            self.times = np.array([float(re.sub(r"^t\s*=\s*", "", s))
+                                   for s in rows[0][1:]])
+            self.x, self.heights = data[:, 0], data[:, 1:].T
 
     def at(self, time, tolerance=5e-3):
         """The outline at a time, or None if there is none within a relative
         `tolerance`."""
-        k = int(np.argmin(np.abs(np.array(self.times) - time)))
+        k = int(np.argmin(np.abs(self.times - time)))
         close = abs(self.times[k] - time) <= tolerance * max(time, 1e-9)
         return self.heights[k] if close else None
 
@@ -183,11 +191,13 @@ def find_reference(directory, parameters):
 
 
 def parse_scale(text, parameters):
-    """A length of time: a number, sqrt(number), or None for the default
-    sqrt(a), a being the parameter of that name (the reference counts in
-    sqrt(H0/g), the run in sqrt(L0/g), H0 = a L0)."""
+    """A length of time: a number, sqrt(number), or None for the default: the
+    parameter `reference_time`, or else sqrt(a), a being the parameter of that
+    name (the reference counts in sqrt(H0/g), the run in sqrt(L0/g), H0 = a
+    L0)."""
     if text is None:
-        return math.sqrt(number(parameters, "a", 1.0))
+        return number(parameters, "reference_time",
+                      math.sqrt(number(parameters, "a", 1.0)))
     match = re.fullmatch(r"\s*sqrt\((.*)\)\s*", text)
     return math.sqrt(float(match.group(1))) if match else float(text)
 

@@ -126,6 +126,12 @@ assert len(run_data.without_repeat(profiles)) == 2
 assert len(run_data.without_repeat(profiles[:2])) == 2
 assert abs(run_data.parse_scale("sqrt(6.25)", {}) - 2.5) < 1e-12
 assert abs(run_data.parse_scale(None, {"a": "4"}) - 2) < 1e-12
+assert run_data.parse_scale(None, {"a": "4", "reference_time": "3"}) == 3
+# a reference with a row per point; the second time has one point less
+with open("points.csv", "w") as f:
+    f.write("t_over_tau,x,height\n0,1,4\n0,2,3\n0.5,1,2\n")
+points = run_data.Reference("points.csv")
+assert list(points.at(0.5)) == [2, 0] and points.at(1) is None
 PYTHON
 "$python" compare.py "$root/tools"
 # Without its libraries (-S: none but Python's own) a tool says what it needs.

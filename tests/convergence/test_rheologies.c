@@ -6,31 +6,17 @@
  *     keep spreading, which keep a corner, how long constant friction will do;
  *     eq. 3.3: run-out 2.2 a;
  *   [valette_2019], section 3.3: run-out ~ mu_s^-1.2, I0^0.11;
- *   [lee_huang_chiew_2015], table II: case 2, run-out 20.7 cm, height 6.48 cm,
- *     and their changes with eta_S and e_eff;
  * and the motion of the heap that eta_max lets stand, of which
  * rho g H^2/(2 eta_max) is left if nothing else moves. Where the papers show a
  * picture the bar is what its words mean on a grid (a cell), to grains (a
  * diameter) or by the theory of the law.
  * Levels are log2 of the cells along the box of the example. */
+#include "collapses.h"
 #include "report.h"
-#include "runs.h"
-#include "talus/diagnostics.h"
-#include "talus/fractions.h"
 
 static const double kAspect = 1.42;
 
 static double ratio_of(double a, double b) { return a / b - 1; }
-
-/* Carry an example to a time and measure. */
-static bool measure_at(struct example *example, double time,
-                       struct diagnostics *d) {
-  const bool good = run_to(example->sim, time);
-  fractions_synchronise(example->sim);
-  diagnostics_measure(example->sim, d);
-  fractions_desynchronise(example->sim);
-  return good;
-}
 
 /* Of examples/rheologies.lua at level 7. */
 static const double kCell = 8. / 128, kGrain = 0.0219;
@@ -157,23 +143,6 @@ static double exponent(int n, const double *x, const double *y) {
   return sum[0] / sum[1];
 }
 
-/* Run-out and height of an example over `base` at a time, for n values of a
- * parameter. */
-static void sweep(const char *name, const char *more, double stop, double base,
-                  const char *parameter, int n, const double *value,
-                  double *runout, double *height) {
-  for (int k = 0; k < n; k++) {
-    struct diagnostics d;
-    struct example example =
-        example_new(name, "%s=%g %s", parameter, value[k], more);
-    const bool good = measure_at(&example, stop, &d);
-    runout[k] = good ? d.front / base - 1 : NAN;
-    height[k] = good ? d.height / base : NAN;
-    diagnostics_free(&d);
-    example_destroy(&example);
-  }
-}
-
 /* The paper lets grains stick to the floor but for a strip of a few d ahead of
  * the front, on which they and the air slip; our floor has a slip length of as
  * much. Without any the exponent is -1.07, -1.00, -0.97 at levels 7, 8, 9. */
@@ -221,50 +190,6 @@ static void report_aspect_ratios(struct report *report) {
     report_at_most(report, name, "run-out off 2.2 a", 8,
                    fabs(ratio_of(run[k], 2.2 * a[k])), 0.1);
   }
-}
-
-/* Steady friction of the closure is between eta_S = 0.42 and mu_tran = 0.539:
- * its run-out must lie between those of constant friction of these two values,
- * and the latter is the least that any such closure can have. */
-static void report_friction_limits(struct report *report, double runout) {
-  static const double friction[] = {0.42, 0.539};
-  double run[2], high[2];
-  sweep("lee_huang_column", "level=8", 7 * sqrt(0.1344 / 9.81), 0.056,
-        "friction", 2, friction, run, high);
-  report_value(report, "friction 0.539", "run-out in cm", 8, 5.6 * run[1]);
-  report_at_least(report, "friction 0.42", "run-out less the closure's in cm",
-                  8, 5.6 * (run[0] - runout), 0);
-  report_at_most(report, "friction 0.539", "run-out less the closure's in cm",
-                 8, 5.6 * (run[1] - runout), 0);
-}
-
-/* Of table II, in the order of the paper's changes: the run-out falls with
- * eta_S by 22 % of its base value and rises with e_eff by 5 %. */
-static void report_glass_beads(struct report *report) {
-  static const double eta_S[] = {0.30, 0.42, 0.51}, e_eff[] = {0.46, 0.58, 0.7};
-  const double length = 0.056, stop = 7 * sqrt(0.1344 / 9.81);
-  double run[3], high[3];
-  sweep("lee_huang_column", "level=8", stop, length, "eta_S", 3, eta_S, run,
-        high);
-  report_value(report, "glass beads", "run-out in cm", 8,
-               100 * run[1] * length);
-  report_value(report, "glass beads", "height in cm", 8,
-               100 * high[1] * length);
-  report_at_most(report, "glass beads", "run-out off table II", 8,
-                 fabs(ratio_of(run[1] * length, 0.207)), 0.15);
-  report_at_most(report, "glass beads", "height off table II", 8,
-                 fabs(ratio_of(high[1] * length, 0.0648)), 0.1);
-  report_friction_limits(report, run[1]);
-  report_at_most(report, "glass beads", "eta_S: change of run-out", 8,
-                 fmax(run[1] - run[0], run[2] - run[1]) / run[1], -0.05);
-  report_at_least(report, "glass beads", "eta_S: change of height", 8,
-                  fmin(high[1] - high[0], high[2] - high[1]) / high[1], 0.05);
-  sweep("lee_huang_column", "level=8", stop, length, "e_eff", 3, e_eff, run,
-        high);
-  report_at_least(report, "glass beads", "e_eff: change of run-out", 8,
-                  fmin(run[1] - run[0], run[2] - run[1]) / run[1], 0);
-  report_at_most(report, "glass beads", "e_eff: change of height", 8,
-                 fmax(high[1] - high[0], high[2] - high[1]) / high[1], 0);
 }
 
 /* Part of the grains that is in cells, not mostly gas, faster than a speed. */
@@ -324,7 +249,6 @@ static void run(struct report *report) {
   report_constant_friction(report);
   report_aspect_ratios(report);
   report_sensitivity(report);
-  report_glass_beads(report);
   report_creep(report);
 }
 
