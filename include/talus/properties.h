@@ -18,7 +18,8 @@
  * with a shear rate of its own. eta of each phase comes from the face's own
  * strain rate and pressure:
  *   shear_rate = sqrt(2 D:D), normal derivatives from the two nodes,
- *   tangential ones the mean of central differences at both; the pressure
+ *   tangential ones the mean of central differences at both, but one-sided
+ *   beside the surface (skin.h); the pressure
  *   varies along the line as it does at rest, with slopes in proportion to
  *   the densities of the two halves; at a wall dp/dn = rho g_n.
  *
@@ -38,6 +39,7 @@
 #include <stdbool.h>
 
 #include "talus/mesh.h"
+#include "talus/skin.h"
 
 struct phase;
 
@@ -67,9 +69,10 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f);
 
-/* shear_f [nfaces] = sqrt(2 D:D) on our own faces; u[e] filled. */
-void properties_shear_rate(const struct mesh *mesh, double *const u[DIM],
-                           double *shear_f);
+/* shear_f [nfaces] = sqrt(2 D:D) on our own faces; skin: of the mesh, or NULL;
+ * u[e] filled. */
+void properties_shear_rate(const struct mesh *mesh, const struct skin *skin,
+                           double *const u[DIM], double *shear_f);
 
 /* eta_f [nfaces_all], Pa s, at a time, s. gas NULL: grains only. c, p filled;
  * normal, plane: the planes of cut leaves; shear_f as above; work: two scratch

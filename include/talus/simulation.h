@@ -19,6 +19,7 @@ enum { SIMULATION_MAX_KNOWN = 8 };
 struct clean;
 struct forest;
 struct hierarchy;
+struct skin;
 
 /* Energies of the grains, per unit width in 2D, in J/m (J in 3D). */
 struct energy {
@@ -66,6 +67,7 @@ struct simulation {
   struct field *gravity_f;           /* face gravity, balanced (properties.h) */
   struct field *normal[DIM], *plane; /* planes of cut leaves */
   bool planes_hold;                  /* they are those of c as it is */
+  struct skin *skin;                 /* of c, none in a single phase */
   struct field *frozen;              /* cc of vof.h, or scratch */
   struct field *band;                /* leaves whose momentum rides with c */
   struct field *u_old[DIM];          /* u^n while u is being advanced */

@@ -9,7 +9,8 @@
  * du_d/dx_e being the mean over both nodes of the central difference along e,
  * read from the stencil of face_owner. Each flux is computed once, coarse
  * sides take the mean: momentum balances to round-off. Linear velocities give
- * exact stresses across levels, rigid rotation none.
+ * exact stresses across levels, rigid rotation none. Beside the surface of the
+ * grains du_d/dx_e is one-sided (skin.h).
  *
  * Solved by GCR with a multigrid cycle inside. The cycle relaxes all
  * components together, transposed gradient included: with components
@@ -28,11 +29,13 @@
 
 #include "talus/hierarchy.h"
 #include "talus/mesh.h"
+#include "talus/skin.h"
 #include "talus/solve.h"
 
 /* Solve. Collective.
  *   rho      [nleaves] > 0
  *   eta_f    [nfaces_all] valid on all faces, >= 0
+ *   skin     of the mesh, or NULL
  *   theta_dt dt for backward Euler, dt / 2 for Crank-Nicolson, >= 0
  *   rhs[d]   [nleaves], kg/m^2/s
  *   bc[d]    [MESH_MAX_PATCHES] of u[d]
@@ -41,8 +44,8 @@
  * When not converged u holds the best iterate. */
 struct solve_stats viscous_solve(const struct mesh *mesh,
                                  struct hierarchy *hierarchy, const double *rho,
-                                 const double *eta_f, double theta_dt,
-                                 double *const rhs[DIM],
+                                 const double *eta_f, const struct skin *skin,
+                                 double theta_dt, double *const rhs[DIM],
                                  const struct bc *const bc[DIM],
                                  double tolerance, int max_iterations,
                                  double *const u[DIM]);
@@ -50,13 +53,15 @@ struct solve_stats viscous_solve(const struct mesh *mesh,
 /* force[d] [nleaves] = (div 2 eta D(u))_d; u[d] [ncells] filled.
  * Collective. */
 void viscous_force(const struct mesh *mesh, const double *eta_f,
-                   double *const u[DIM], double *const force[DIM]);
+                   const struct skin *skin, double *const u[DIM],
+                   double *const force[DIM]);
 
 /* dissipation [nleaves] = 2 eta D:D, W/m^3, as the mean over each cell's
  * faces of sum_e tau_de (u_e1 - u_e0) / h times the number of axes: its sum
  * over the domain is the work of the discrete force on a resting boundary,
  * -sum_i V_i u_i . force_i (on one level, to round-off). Collective. */
 void viscous_dissipation(const struct mesh *mesh, const double *eta_f,
-                         double *const u[DIM], double *dissipation);
+                         const struct skin *skin, double *const u[DIM],
+                         double *dissipation);
 
 #endif

@@ -192,15 +192,14 @@ static void line_halves(const struct mesh *mesh, int d, int32_t f,
   if (leaf[1] < 0) half[1] = half[0];
 }
 
-/* 2 D:D at face f of axis d from the stencil of its owner. */
-static inline double face_shear_squared(const struct mesh *mesh, int d,
-                                        int32_t f, double *const u[DIM]) {
+/* grad[e][t] = du_e/dx_t at face f of axis d from the stencil of its owner. */
+static inline void face_gradient(const struct mesh *mesh, int d, int32_t f,
+                                 double *const u[DIM], double grad[DIM][DIM]) {
   const int32_t *node = mesh->face_node[f];
   const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
   const int other =
       stencil_face(2 * d + (node[0] == mesh->face_owner[f] ? 1 : 0));
   const double k = 1 / mesh->face_h[f];
-  double grad[DIM][DIM]; /* grad[e][t] = du_e/dx_t */
   for (int e = 0; e < DIM; e++) {
     for (int t = 0; t < DIM; t++) {
       const int step = stencil_step(t);
@@ -212,6 +211,10 @@ static inline double face_shear_squared(const struct mesh *mesh, int d,
                                  u[e][stencil[other - step]]);
     }
   }
+}
+
+/* 2 D:D */
+static inline double shear_squared(double grad[DIM][DIM]) {
   double sum = 0;
   for (int e = 0; e < DIM; e++) {
     sum += 2 * grad[e][e] * grad[e][e];
@@ -223,14 +226,34 @@ static inline double face_shear_squared(const struct mesh *mesh, int d,
   return sum;
 }
 
-void properties_shear_rate(const struct mesh *mesh, double *const u[DIM],
-                           double *shear_f) {
+/* Of the faces beside the surface. */
+static void skin_shear_squared(const struct mesh *mesh, const struct skin *skin,
+                               double *const u[DIM], double *squared_f) {
+  for (int32_t k = 0; k < skin->n; k++) {
+    const struct skin_face *face = &skin->face[k];
+    const int32_t f = face->face;
+    double grad[DIM][DIM];
+    face_gradient(mesh, face->axis, f, u, grad);
+    for (int t = 0; t < DIM; t++) {
+      for (int e = 0; e < DIM && t != face->axis; e++) {
+        grad[e][t] = skin_difference(mesh, face, t, u[e]) / mesh->face_h[f];
+      }
+    }
+    squared_f[f] = shear_squared(grad);
+  }
+}
+
+void properties_shear_rate(const struct mesh *mesh, const struct skin *skin,
+                           double *const u[DIM], double *shear_f) {
 #pragma GCC unroll 3 /* so that d is known in the loop over faces */
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      shear_f[f] = face_shear_squared(mesh, d, f, u);
+      double grad[DIM][DIM];
+      face_gradient(mesh, d, f, u, grad);
+      shear_f[f] = shear_squared(grad);
     }
   }
+  if (skin) skin_shear_squared(mesh, skin, u, shear_f);
   /* apart, several at a time: roots are slow */
   for (int32_t f = 0; f < mesh->nfaces; f++) shear_f[f] = sqrt(shear_f[f]);
 }

@@ -11,6 +11,7 @@
 #include "talus/hierarchy.h"
 #include "talus/memory.h"
 #include "talus/shapes.h"
+#include "talus/skin.h"
 #include "talus/step.h"
 #include "talus/vof.h"
 
@@ -240,6 +241,7 @@ struct simulation *simulation_new_on(const struct params *params,
   struct simulation *sim = MEM_NEW(struct simulation, 1);
   sim->params = params;
   sim->forest = forest;
+  sim->skin = skin_new();
   simulation_remesh(sim);
   add_state(sim);
   add_scratch(sim);
@@ -252,6 +254,7 @@ void simulation_destroy(struct simulation *sim) {
   if (!sim) return;
   fields_destroy(&sim->fields);
   clean_destroy(sim->clean);
+  skin_destroy(sim->skin);
   hierarchy_destroy(sim->hierarchy);
   mesh_destroy(sim->mesh);
   forest_destroy(sim->forest);

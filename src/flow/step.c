@@ -27,6 +27,7 @@
 #include "talus/properties.h"
 #include "talus/side_walls.h"
 #include "talus/simulation.h"
+#include "talus/skin.h"
 #include "talus/time_step.h"
 #include "talus/viscous.h"
 #include "talus/vof.h"
@@ -83,6 +84,10 @@ static void update_density(struct simulation *sim) {
   field_arrays(sim->normal, normal);
   field_fill(mesh, sim->c);
   fractions_update_planes(sim);
+  if (!sim->params->single_phase) {
+    const double least = density[1] / (density[0] + density[1]);
+    skin_find(mesh, sim->c->v, least, sim->skin);
+  }
   properties_density(mesh, density, sim->c->v, sim->closed, sim->rho->v,
                      sim->alpha_f->v);
   field_fill(mesh, sim->rho);
@@ -134,7 +139,7 @@ static void update_viscosity(struct simulation *sim,
   double *u[DIM], *normal[DIM];
   field_arrays(velocity, u), field_arrays(sim->normal, normal);
   field_fill(mesh, sim->p);
-  properties_shear_rate(mesh, u, sim->face[0]->v);
+  properties_shear_rate(mesh, sim->skin, u, sim->face[0]->v);
   double *work[2] = {sim->face[1]->v, sim->face[2]->v};
   properties_viscosity(mesh, sim->time, &params->grains,
                        params->single_phase ? NULL : &params->gas,
@@ -208,7 +213,7 @@ static void viscous_rhs(struct simulation *sim, double dt,
   if (theta < 1) {
     double *u[DIM];
     field_arrays(sim->u_old, u);
-    viscous_force(mesh, sim->eta_f->v, u, rhs);
+    viscous_force(mesh, sim->eta_f->v, sim->skin, u, rhs);
   }
   for (int e = 0; e < DIM; e++) {
     const double *u = sim->u[e]->v, *g = sim->g[e]->v;
@@ -282,9 +287,10 @@ static void diffuse_momentum(struct simulation *sim, double dt) {
     }
   }
   sim->scale = velocity_scale(sim, dt);
-  sim->viscous = viscous_solve(
-      mesh, sim->hierarchy, mass, sim->eta_f->v, params->theta * dt, rhs, bc,
-      params->tolerance_viscous * sim->scale, params->max_iterations, u);
+  sim->viscous = viscous_solve(mesh, sim->hierarchy, mass, sim->eta_f->v,
+                               sim->skin, params->theta * dt, rhs, bc,
+                               params->tolerance_viscous * sim->scale,
+                               params->max_iterations, u);
   for (int e = 0; e < DIM; e++) {
     const double *inviscid = sim->face[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {

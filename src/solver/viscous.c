@@ -12,6 +12,7 @@ struct context {
   const struct mesh *mesh;
   struct hierarchy *h;
   const double *rho, *eta_f;
+  const struct skin *skin;
   double theta_dt;
   double *const *rhs;
   const struct bc *const *bc;
@@ -42,13 +43,32 @@ static inline void face_stress(const struct mesh *mesh, const double *eta_f,
   }
 }
 
+/* Beside the surface of the grains. */
+static void skin_stress(const struct mesh *mesh, const double *eta_f,
+                        const struct skin *skin, double *const u[DIM],
+                        double *const tau[DIM]) {
+  for (int32_t k = 0; k < skin->n; k++) {
+    const struct skin_face *face = &skin->face[k];
+    const int32_t f = face->face, *node = mesh->face_node[f];
+    const double eta = eta_f[f] / mesh->face_h[f];
+    for (int e = 0; e < DIM; e++) {
+      if (e == face->axis) continue;
+      const double du = u[e][node[1]] - u[e][node[0]];
+      const double dv = skin_difference(mesh, face, e, u[face->axis]);
+      tau[e][f] = face->lines[e] ? eta * (du + dv) : 0;
+    }
+  }
+}
+
 static void stress(const struct mesh *mesh, const double *eta_f,
-                   double *const u[DIM], double *const tau[DIM]) {
+                   const struct skin *skin, double *const u[DIM],
+                   double *const tau[DIM]) {
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       face_stress(mesh, eta_f, u, tau, f, d);
     }
   }
+  if (skin) skin_stress(mesh, eta_f, skin, u, tau);
   mesh_fill_faces(mesh, DIM, tau);
 }
 
@@ -62,10 +82,11 @@ static inline double divergence(const struct mesh *mesh, const double *tau,
 }
 
 void viscous_force(const struct mesh *mesh, const double *eta_f,
-                   double *const u[DIM], double *const force[DIM]) {
+                   const struct skin *skin, double *const u[DIM],
+                   double *const force[DIM]) {
   double *tau[DIM];
   for (int e = 0; e < DIM; e++) tau[e] = MEM_NEW(double, mesh->nfaces_all);
-  stress(mesh, eta_f, u, tau);
+  stress(mesh, eta_f, skin, u, tau);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       force[e][i] = divergence(mesh, tau[e], i) / mesh->h[i];
@@ -75,10 +96,11 @@ void viscous_force(const struct mesh *mesh, const double *eta_f,
 }
 
 void viscous_dissipation(const struct mesh *mesh, const double *eta_f,
-                         double *const u[DIM], double *dissipation) {
+                         const struct skin *skin, double *const u[DIM],
+                         double *dissipation) {
   double *tau[DIM];
   for (int e = 0; e < DIM; e++) tau[e] = MEM_NEW(double, mesh->nfaces_all);
-  stress(mesh, eta_f, u, tau);
+  stress(mesh, eta_f, skin, u, tau);
   double *power = tau[0];
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int32_t *node = mesh->face_node[f];
@@ -105,7 +127,7 @@ static void operate(const struct context *k, double *const u[DIM],
   for (int e = 0; e < DIM; e++) {
     tau[e] = k->h->work_faces + (int64_t)e * mesh->nfaces_all;
   }
-  stress(mesh, k->eta_f, u, tau);
+  stress(mesh, k->eta_f, k->skin, u, tau);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double ratio = k->theta_dt / mesh->h[i];
     for (int e = 0; e < DIM; e++) {
@@ -151,12 +173,13 @@ static void prepare(void *context) {
 
 struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
                                  const double *rho, const double *eta_f,
-                                 double theta_dt, double *const rhs[DIM],
+                                 const struct skin *skin, double theta_dt,
+                                 double *const rhs[DIM],
                                  const struct bc *const bc[DIM],
                                  double tolerance, int max_iterations,
                                  double *const u[DIM]) {
   CHECK(h->revision == mesh->revision, "hierarchy of an older mesh");
-  struct context context = {mesh, h, rho, eta_f, theta_dt, rhs, bc};
+  struct context context = {mesh, h, rho, eta_f, skin, theta_dt, rhs, bc};
   residual(&context, u, h->residual);
   const struct krylov_system system = {.comm = mesh->comm,
                                        .n = mesh->nleaves,

@@ -121,7 +121,7 @@ static struct result time_viscous(int level, int calls) {
   for (int k = 0; k < calls; k++) {
     system_reset(&s);
     result.iterations = viscous_solve(s.mesh, s.hierarchy, s.rho, s.coefficient,
-                                      0.01, s.rhs, bc, 1e-4, 100, s.x)
+                                      NULL, 0.01, s.rhs, bc, 1e-4, 100, s.x)
                             .iterations;
   }
   result.seconds = (MPI_Wtime() - begin) / calls;

@@ -1,19 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A dense square that moves at U = 1 through light gas at rest, without
- * gravity, in a periodic box of 4 D, 32 cells per edge D. Grains 1e3 or 1e6
- * times as dense as the gas, viscosities 1e-2 and 1e-5 rho U D. The gas can
- * take next to nothing of the momentum of the square (its own mass is 1.5 % of
- * it at 1e3, and only what it drags along counts), which hence moves on as it
- * is: exact in the limit of no gas. From step 2, when the start by a jolt is
- * over, over a travel of 3 D: the speed of its centre of volume, and its shape
- * against the square shifted by the travel.
+ * gravity, in a periodic box of 4 D, 32 cells per edge D. Grains 1e3 to 1e6
+ * times as dense as the gas, their viscosity 1e-2 rho U D, that of the gas 1e-5
+ * at 1e3 and 1e6. The gas can take next to nothing of the momentum of the
+ * square (its own mass is 1.5 % of it at 1e3, and only what it drags along
+ * counts), which hence moves on as it is: exact in the limit of no gas. From
+ * step 2, when the start by a jolt is over, over a travel of 3 D: the speed of
+ * its centre of volume, and its shape against the square shifted by the travel.
  *
- * The bar on the shape is missed at 1e3: 0.043. On a face between two cells of
- * the top layer the stress has the viscosity of the grains, but its transverse
- * derivative reaches into the gas. A trial with the least viscosity of the
- * lines next to it that cross the surface gave 0.033 on 16, 32 and 64 cells
- * alike, so the rest may be what the gas does to such soft grains.
- */
+ * The shape is not that of the limit at 1e3, as such soft grains give way. The
+ * pressure of the gas varies around the square by a few rho_gas U^2 over D, and
+ * the surface moves apart under it by
+ *   K/4 (rho_gas/rho) (U t)^2/D on a perimeter of 4 D, K of order one,
+ * so that a part K (rho_gas/rho) (U t/D)^2 of the area is out of place: 2.7e-2
+ * at 1e3 for K = 3, and less in proportion to the gas. With rho_gas and eta_gas
+ * smaller by the same factor the gas flows alike (Re = 100) and K stays: 3.2e-2
+ * at 1e3, 3.8e-3 at 1e4, 1.7e-3 at 1e5, where the scheme alone is left; on 16
+ * cells 3.4e-2, 6.3e-3, 4.4e-3. So K = 3.4 on both grids. The bar is
+ *   0.005 + 3.5 (rho_gas/rho) (U t/D)^2.
+ * Before the grains beside the surface were kept from feeling the velocity
+ * gradient of the gas (skin.h) it was 4.3e-2, 2.5e-2, 2.3e-2. */
 #include "../mesh/transport.h"
 #include "report.h"
 #include "runs.h"
@@ -25,7 +31,7 @@ static double speed_at_start(void *context, const double x[3]) {
   return cube(context, x) > 0;
 }
 
-static struct params dense_square(double ratio) {
+static struct params dense_square(double ratio, double eta_gas) {
   struct params params = periodic_params(7);
   params.size = kBox;
   params.single_phase = false;
@@ -33,7 +39,7 @@ static struct params dense_square(double ratio) {
   params.shape = (struct function){cube, &start};
   params.velocity[0] = (struct function){speed_at_start, &start};
   params.grains.rheology = newtonian(1e-2);
-  params.gas = (struct phase){1 / ratio, newtonian(1e-5)};
+  params.gas = (struct phase){1 / ratio, newtonian(eta_gas)};
   params.tolerance_pressure = params.tolerance_viscous = 1e-6;
   return params;
 }
@@ -88,8 +94,9 @@ static double shape_error(struct simulation *sim, const struct track *to) {
   return integral(sim->mesh, error);
 }
 
-static void run_ratio(struct report *report, const char *grid, double ratio) {
-  const struct params params = dense_square(ratio);
+static void run_ratio(struct report *report, const char *grid, double ratio,
+                      double eta_gas) {
+  const struct params params = dense_square(ratio, eta_gas);
   struct simulation *sim = simulation_new(&params);
   struct track from, now = {0, {start.centre[0], start.centre[1]}};
   bool good = true;
@@ -108,15 +115,18 @@ static void run_ratio(struct report *report, const char *grid, double ratio) {
   report_at_most(report, grid, "|speed / at step 2 - 1|", 7,
                  good ? fabs(mean / speed - 1) : NAN, 0.01);
   report_at_most(report, grid, "mean |c - c0|", 7,
-                 good ? shape_error(sim, &now) : NAN, 0.02);
+                 good ? shape_error(sim, &now) : NAN,
+                 0.005 + 3.5 / ratio * kTravel * kTravel);
   report_value(report, grid, "largest |u|", 7, fastest);
   report_value(report, grid, "steps", 7, (double)sim->step);
   simulation_destroy(sim);
 }
 
 static void run(struct report *report) {
-  run_ratio(report, "density 1e3", 1e3);
-  run_ratio(report, "density 1e6", 1e6);
+  run_ratio(report, "density 1e3", 1e3, 1e-5);
+  run_ratio(report, "density 1e4 Re 100", 1e4, 1e-6);
+  run_ratio(report, "density 1e5 Re 100", 1e5, 1e-7);
+  run_ratio(report, "density 1e6", 1e6, 1e-5);
 }
 
 const struct convergence_case dense_square_case = {

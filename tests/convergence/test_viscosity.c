@@ -99,7 +99,7 @@ static struct norms solve(const void *context, enum grid grid, int level) {
     scale = fmax(scale, largest_size(s.mesh, s.rhs[d]));
   }
   const struct solve_stats stats =
-      viscous_solve(s.mesh, s.hierarchy, s.rho, s.eta_f, kDt, s.rhs, bc,
+      viscous_solve(s.mesh, s.hierarchy, s.rho, s.eta_f, NULL, kDt, s.rhs, bc,
                     1e-8 * scale, MOST, s.u);
   struct norms norms = {0};
   for (int d = 0; d < DIM; d++) {

@@ -119,7 +119,7 @@ START_TEST(shear_rate_of_linear_velocities_is_exact) {
       squared += 2 * strain * strain; /* 2 D:D */
     }
   }
-  properties_shear_rate(mesh, u, shear_f);
+  properties_shear_rate(mesh, NULL, u, shear_f);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       if (_i & 1) { /* across a periodic side the profile jumps */

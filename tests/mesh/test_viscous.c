@@ -74,7 +74,7 @@ static void set_linear(struct flow *s, double a[DIM][DIM]) {
 static double inner_force(struct flow *s) {
   const struct mesh *mesh = s->mesh;
   double most = 0;
-  viscous_force(mesh, s->eta_f, s->u, s->rhs);
+  viscous_force(mesh, s->eta_f, NULL, s->u, s->rhs);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     bool inside = true;
     for (int d = 0; d < DIM; d++) {
@@ -128,7 +128,7 @@ START_TEST(momentum_balances) {
       flow_new(grid_new(MPI_COMM_WORLD, 2, true, 1, 4), rough, BC_NEUMANN);
   double sum[DIM] = {0}, size = 0;
   set_noise(s);
-  viscous_force(s->mesh, s->eta_f, s->u, s->rhs);
+  viscous_force(s->mesh, s->eta_f, NULL, s->u, s->rhs);
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
       sum[d] += mesh_volume(s->mesh, i) * s->rhs[d][i];
@@ -147,8 +147,8 @@ START_TEST(dissipation_is_the_work_of_the_force) {
       flow_new(grid_new(MPI_COMM_WORLD, 2, _i, 3, 3), rough, BC_DIRICHLET);
   double *heat = MEM_NEW(double, s->mesh->nleaves), work = 0, sum = 0;
   set_noise(s);
-  viscous_force(s->mesh, s->eta_f, s->u, s->rhs);
-  viscous_dissipation(s->mesh, s->eta_f, s->u, heat);
+  viscous_force(s->mesh, s->eta_f, NULL, s->u, s->rhs);
+  viscous_dissipation(s->mesh, s->eta_f, NULL, s->u, heat);
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     sum += mesh_volume(s->mesh, i) * heat[i];
     for (int d = 0; d < DIM; d++) {
@@ -196,8 +196,8 @@ static double wave_error(int base, int level, bool *converged) {
     }
   }
   const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1, s->rhs, s->bc,
-                    1e-8, MOST, s->u);
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 1, s->rhs,
+                    s->bc, 1e-8, MOST, s->u);
   *converged = *converged && stats.status == SOLVE_CONVERGED;
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
@@ -238,8 +238,8 @@ static int disc_iterations(int base, int level, double lambda) {
     }
   }
   const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, dt, s->rhs, s->bc,
-                    1e-8, MOST, s->u);
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, dt, s->rhs,
+                    s->bc, 1e-8, MOST, s->u);
   flow_destroy(s);
   return stats.status == SOLVE_CONVERGED ? stats.iterations : MOST;
 }
@@ -261,7 +261,7 @@ END_TEST
 static double true_residual(struct flow *s) {
   double *force[DIM], most = 0;
   for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, s->mesh->nleaves);
-  viscous_force(s->mesh, s->eta_f, s->u, force);
+  viscous_force(s->mesh, s->eta_f, NULL, s->u, force);
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < s->mesh->nleaves; i++) {
       most = fmax(most, fabs(s->rhs[d][i] - s->u[d][i] + force[d][i]));
@@ -282,8 +282,8 @@ START_TEST(residual_is_what_it_is_said_to_be) {
   }
   const double tolerance = digits[_i % 3];
   const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1, s->rhs, s->bc,
-                    tolerance, MOST, s->u);
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 1, s->rhs,
+                    s->bc, tolerance, MOST, s->u);
   const double residual = true_residual(s);
   ck_assert_int_eq(stats.status, SOLVE_CONVERGED);
   ck_assert_double_le(residual, tolerance);
@@ -301,8 +301,8 @@ static int floor_iterations(double (*eta)(const double *x)) {
     s->rhs[1][i] = sin(7 * s->mesh->x[i][0]) * cos(5 * s->mesh->x[i][1]);
   }
   const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1e4, s->rhs, s->bc,
-                    1e-8, MOST, s->u);
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 1e4, s->rhs,
+                    s->bc, 1e-8, MOST, s->u);
   flow_destroy(s);
   return stats.status == SOLVE_CONVERGED ? stats.iterations : MOST;
 }
@@ -328,8 +328,8 @@ START_TEST(solution_does_not_depend_on_ranks) {
       for (int d = 0; d < DIM; d++) s->rhs[d][i] = sin(5 * s->mesh->x[i][d]);
     }
     const struct solve_stats stats =
-        viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 0.01, s->rhs,
-                      s->bc, 1e-10, MOST, s->u);
+        viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 0.01,
+                      s->rhs, s->bc, 1e-10, MOST, s->u);
     double local = 0;
     for (int32_t i = 0; i < s->mesh->nleaves; i++) {
       local += mesh_volume(s->mesh, i) * (s->u[0][i] + 2 * s->u[1][i]);
@@ -357,8 +357,8 @@ START_TEST(robin_walls_slip) {
   along[3] = (struct bc){BC_DIRICHLET, 1, 0};
   s->bc[0] = along;
   const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, 1e8, s->rhs, s->bc,
-                    1e-4, MOST, s->u);
+      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 1e8, s->rhs,
+                    s->bc, 1e-4, MOST, s->u);
   double error = 0;
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     const double exact = (s->mesh->x[i][1] + 0.3) / 1.3;

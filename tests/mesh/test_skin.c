@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/skin.h"
+
+#include <check.h>
+
+#include "faces.h"
+#include "talus/properties.h"
+#include "talus/viscous.h"
+
+/* A block of grains, of viscosity 1, in a gas without any, which moves as it
+ * likes; leaves of 1/16. `low` is where it begins, it ends at 3/4. */
+static double low[DIM];
+
+static bool in_block(const double *x) {
+  bool in = true;
+  for (int d = 0; d < DIM; d++) {
+    in = in && x[d] > low[d] + 1e-9 && x[d] < 0.75 - 1e-9;
+  }
+  return in;
+}
+
+static double viscosity(const double *x) { return in_block(x); }
+
+struct block {
+  struct forest *forest;
+  struct mesh *mesh;
+  struct skin *skin;
+  double *c, *u[DIM], *eta_f, *force[DIM], *shear_f;
+};
+
+/* u = A x in the grains. */
+static struct block *block_new(double height, double a[DIM][DIM]) {
+  static const struct bc neumann[MESH_MAX_PATCHES];
+  const struct bc *bc[] = {neumann, neumann, neumann};
+  struct block *b = MEM_NEW(struct block, 1);
+  for (int d = 0; d < DIM; d++) low[d] = d == 1 ? 0.75 - height : 0.25;
+  b->forest = grid_new(MPI_COMM_WORLD, 1, false, 4, 4);
+  b->mesh = mesh_new(b->forest);
+  b->skin = skin_new();
+  b->c = MEM_NEW(double, b->mesh->ncells);
+  b->eta_f = face_field(b->mesh, viscosity, false);
+  b->shear_f = MEM_NEW(double, b->mesh->nfaces);
+  for (int d = 0; d < DIM; d++) {
+    b->u[d] = MEM_NEW(double, b->mesh->ncells);
+    b->force[d] = MEM_NEW(double, b->mesh->nleaves);
+  }
+  for (int32_t i = 0; i < b->mesh->nleaves; i++) {
+    const double *x = b->mesh->x[i];
+    b->c[i] = in_block(x);
+    for (int d = 0; d < DIM; d++) {
+      b->u[d][i] = b->c[i] > 0 ? 0 : sin(1e4 * x[d] + 3e4 * x[1 - d % 2]);
+      for (int e = 0; e < DIM && b->c[i] > 0; e++) b->u[d][i] += a[d][e] * x[e];
+    }
+  }
+  mesh_fill(b->mesh, 1, &b->c, bc, false);
+  mesh_fill(b->mesh, DIM, b->u, bc, false);
+  skin_find(b->mesh, b->c, 0.01, b->skin);
+  return b;
+}
+
+static void block_destroy(struct block *b) {
+  for (int d = 0; d < DIM; d++) {
+    mem_free(b->u[d]);
+    mem_free(b->force[d]);
+  }
+  mem_free(b->shear_f);
+  mem_free(b->eta_f);
+  mem_free(b->c);
+  skin_destroy(b->skin);
+  mesh_destroy(b->mesh);
+  forest_destroy(b->forest);
+  mem_free(b);
+}
+
+/* Largest force of viscosity. */
+static double largest_force(struct block *b, const struct skin *skin) {
+  double most = 0;
+  viscous_force(b->mesh, b->eta_f, skin, b->u, b->force);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t i = 0; i < b->mesh->nleaves; i++) {
+      most = fmax(most, fabs(b->force[d][i]));
+    }
+  }
+  return mesh_max(b->mesh, most);
+}
+
+/* Largest departure of the shear rate of the grains from a value. */
+static double shear_error(struct block *b, const struct skin *skin,
+                          double exact) {
+  double most = 0;
+  properties_shear_rate(b->mesh, skin, b->u, b->shear_f);
+  for (int32_t f = 0; f < b->mesh->nfaces; f++) {
+    if (b->eta_f[f] > 0) most = fmax(most, fabs(b->shear_f[f] - exact));
+  }
+  return mesh_max(b->mesh, most);
+}
+
+START_TEST(grains_that_turn_feel_no_gas) {
+  double a[DIM][DIM] = {{0}};
+  a[0][1] = 1, a[1][0] = -1;
+  a[DIM - 1][0] += 0.5, a[0][DIM - 1] -= 0.5;
+  struct block *b = block_new(0.5, a);
+  ck_assert_double_le(largest_force(b, b->skin), 1e-12); /* 1e-16 / h^2 */
+  ck_assert_double_le(shear_error(b, b->skin, 0), 1e-13);
+  ck_assert_double_ge(largest_force(b, NULL), 10); /* of 1 / (4 h^2) */
+  ck_assert_double_ge(shear_error(b, NULL, 0), 1);
+  block_destroy(b);
+}
+END_TEST
+
+START_TEST(shear_rate_of_grains_is_exact_up_to_the_surface) {
+  double a[DIM][DIM] = {{0}}, squared = 0;
+  for (int d = 0; d < DIM; d++) {
+    for (int e = 0; e < DIM; e++) a[d][e] = sin(1 + 3 * d + 5 * e);
+  }
+  for (int d = 0; d < DIM; d++) {
+    for (int e = 0; e < DIM; e++) {
+      squared += 0.5 * (a[d][e] + a[e][d]) * (a[d][e] + a[e][d]);
+    }
+  }
+  struct block *b = block_new(0.5, a);
+  ck_assert_double_le(shear_error(b, b->skin, sqrt(squared)), 1e-13);
+  block_destroy(b);
+}
+END_TEST
+
+/* Its cells have no neighbours along y that are grains: nothing bends it. */
+START_TEST(film_of_one_cell_does_not_bend) {
+  double a[DIM][DIM] = {{0}};
+  a[1][0] = 1;
+  struct block *b = block_new(1. / 16, a);
+  ck_assert_double_le(largest_force(b, b->skin), 1e-12);
+  block_destroy(b);
+}
+END_TEST
+
+Suite *skin_suite(void);
+Suite *skin_suite(void) {
+  Suite *suite = suite_create("skin");
+  TCase *t = tcase_create("skin");
+  tcase_add_test(t, grains_that_turn_feel_no_gas);
+  tcase_add_test(t, shear_rate_of_grains_is_exact_up_to_the_surface);
+  tcase_add_test(t, film_of_one_cell_does_not_bend);
+  suite_add_tcase(suite, t);
+  return suite;
+}
