@@ -2,15 +2,16 @@
 /*
  * Start, end and errors of the program.
  *
- * Five tools, each for one kind of trouble:
+ * Six tools, each for one kind of trouble:
  *
  *   ASSERT(cond)           a bug; debug builds only, allowed in hot loops
  *   CHECK(cond, fmt, ...)  a broken contract between modules; always on
  *   FATAL(fmt, ...)        the machine lets us down: memory, MPI, HDF5, NaN
  *   USER_ERROR(fmt, ...)   the user asked for something that cannot be
+ *   SYSTEM_ERROR(fmt, ...) so, but for want of something on this machine
  *   WARN_ONCE(fmt, ...)    the run goes on, but somebody should know
  *
- * All but USER_ERROR add rank, file, line and function. Word a message as:
+ * All but these two add rank, file, line and function. Word a message as:
  * what happened, the value, what is allowed, what to try.
  *
  * Before base_begin and after base_end the program is taken to be rank 0 of 1,
@@ -86,6 +87,10 @@ int base_size(void);
  * there are any. */
 #define USER_ERROR(...) base_user_error(__VA_ARGS__)
 
+/* As USER_ERROR, for what the machine does not allow: status EXIT_SYSTEM.
+ * Collective. */
+#define SYSTEM_ERROR(...) base_system_error(__VA_ARGS__)
+
 /* Warns on stderr and in the log the first time this line of code is reached.
  * Only rank 0 prints: reduce the condition first if ranks can differ. */
 #define WARN_ONCE(...)                                      \
@@ -110,6 +115,8 @@ void base_check_failed(const char *file, int line, const char *function,
                        const char *condition, const char *format, ...)
     __attribute__((format(printf, 5, 6), noreturn, cold));
 void base_user_error(const char *format, ...)
+    __attribute__((format(printf, 1, 2), noreturn, cold));
+void base_system_error(const char *format, ...)
     __attribute__((format(printf, 1, 2), noreturn, cold));
 void base_warn(const char *file, int line, const char *function,
                const char *format, ...)

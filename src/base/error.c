@@ -118,20 +118,31 @@ void base_check_failed(const char *file, int line, const char *function,
   die(file, line, function, message);
 }
 
-void base_user_error(const char *format, ...) {
+/* Last words in good order, of rank 0, and the end. */
+static _Noreturn void end_in_order(int status, const char *format,
+                                   va_list arguments) {
   if (rank == 0) {
     char message[MESSAGE_LENGTH];
-    va_list arguments;
-    va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
     fflush(stdout);
     fprintf(stderr, "talus: error: %s\n", message);
     log_info("error: %s", message);
   }
   log_close();
   if (mpi_runs()) MPI_Finalize();
-  exit(EXIT_USER);
+  exit(status);
+}
+
+void base_user_error(const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  end_in_order(EXIT_USER, format, arguments);
+}
+
+void base_system_error(const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  end_in_order(EXIT_SYSTEM, format, arguments);
 }
 
 void base_warn(const char *file, int line, const char *function,
