@@ -30,8 +30,12 @@ static const char RUN_HELP[] =
     "  name=value         overrides what the case declares by param();\n"
     "                     lists as times=0.5,1,2\n"
     "  -o DIR             output directory; default: name of the case + .out;\n"
-    "                     a run that it holds is replaced, pictures and all\n"
-    "  --restart          go on from DIR/checkpoint.h5\n"
+    "                     a run that it holds is replaced, with the pictures\n"
+    "                     of talus plot; files of others are left alone\n"
+    "  --restart          go on from DIR/checkpoint.h5, which must be as it "
+    "was\n"
+    "                     written, with all rows of the tables before it; or\n"
+    "                     from a copy of it alone, with new tables\n"
     "  --max-steps N      stop after N steps, with a checkpoint\n"
     "  --max-walltime S   stop after S seconds, with a checkpoint\n"
     "  --quiet            say nothing but warnings and errors\n"
@@ -128,8 +132,10 @@ static const char SNAPSHOT_HELP[] =
     "        centre = f[\"vertices\"][:][f[\"cells\"][:]].mean(axis=1)\n"
     "        print(time, centre[grains].max(axis=0))\n"
     "\n"
-    "checkpoint.h5, to go on with --restart; parameters.csv, every parameter\n"
-    "in use; run.log, what happened. `talus plot DIR` adds outlines.png,\n"
+    "checkpoint.h5, to go on with --restart: HDF5 after a seal of 512 bytes,\n"
+    "with a checksum of every byte; parameters.csv, every parameter in use;\n"
+    "run.log, what happened; run.lock, while a run goes on, who runs it. "
+    "`talus plot DIR` adds outlines.png,\n"
     "fields-final.png, history.png and film.gif (see `talus help plot`).\n";
 
 static void help_usage(void) { fputs(USAGE, stdout); }

@@ -16,9 +16,11 @@
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/fractions.h"
+#include "talus/lock.h"
 #include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/mesh.h"
+#include "talus/old_run.h"
 #include "talus/output.h"
 #include "talus/parameter_changes.h"
 #include "talus/params.h"
@@ -224,27 +226,13 @@ static void compare_parameters(const struct run *run) {
   mem_free(path);
 }
 
-/* The time that the run in the directory came to, if there is one. */
-static bool find_old_run(const char *directory, double *time) {
-  bool found = false;
-  if (base_rank() == 0) {
-    char *path = output_path(directory, "series.csv"), line[1024];
-    FILE *f = fopen(path, "r");
-    mem_free(path);
-    while (f != NULL && fgets(line, sizeof line, f) != NULL)
-      if (sscanf(line, "%*d,%lf,", time) == 1) found = true;
-    if (f != NULL) fclose(f);
-  }
-  return found;
-}
-
 static void replace_old_run(const struct run *run) {
   const char *directory = run->options->directory;
   double time = 0;
-  if (find_old_run(directory, &time))
+  if (old_run_time(directory, &time))
     progress_say(run->progress, "%s held a run to time %.6g; it is replaced",
                  directory, time);
-  output_remove_run(directory);
+  old_run_remove(directory);
 }
 
 /* Are all rows there that were written before the checkpoint? One that was
@@ -264,10 +252,11 @@ static void open_files(struct run *run) {
   const char *directory = run->options->directory;
   const struct run_state *before = &run->before;
   output_make_directory(directory);
+  lock_take(directory);
   run->progress =
       progress_new(sim->time, run->params->stop, run->options->quiet);
   if (run->options->restart)
-    output_remove_snapshots(directory, (int)run->before.snapshots);
+    old_run_remove_snapshots(directory, (int)run->before.snapshots);
   else
     replace_old_run(run);
   char *path = output_path(directory, "run.log");
@@ -301,13 +290,25 @@ static void say_begin(const struct run *run) {
   progress_say(run->progress, "%s", alone);
 }
 
+/* Refuses a directory that cannot be written to, or that holds what is not to
+ * be written over: another run, or somebody's files. */
+static void prepare_directory(const struct run_options *options) {
+  output_check_directory(options->directory);
+  if (options->restart) {
+    lock_take(options->directory);
+  } else {
+    lock_check(options->directory);
+    old_run_check(options->directory);
+  }
+}
+
 static struct run *run_new(const struct params *params,
                            const struct run_options *options) {
   struct run *run = MEM_NEW(struct run, 1);
   double begin = MPI_Wtime();
   run->params = params;
   run->options = options;
-  output_check_directory(options->directory);
+  prepare_directory(options);
   run->checkpoint_path = output_path(options->directory, "checkpoint.h5");
   run->parameters =
       output_parameters(options->write_parameters, options->context);
@@ -333,6 +334,7 @@ static void run_destroy(struct run *run) {
   mem_free(run->parameters);
   mem_free(run->checkpoint_path);
   log_close();
+  lock_release();
   mem_free(run);
 }
 

@@ -36,6 +36,9 @@ from matplotlib.ticker import (FuncFormatter, LogLocator, MaxNLocator,
 
 SAND, EARTH, INK = "#e3c48d", "#8a5a22", "#222222"
 BLUE, RED, GREEN, GREY = "#24639c", "#b5382b", "#3d7d3a", "#777777"
+# In every picture: a run that replaces another removes those alone that have it
+# (src/io/old_run.c).
+SIGNATURE = "talus plot"
 GRAINS = LinearSegmentedColormap.from_list("grains", ["#f7f9fb", SAND])
 
 plt.rcParams.update({
@@ -499,8 +502,9 @@ def make_film(options, parameters, units):
 
     writers = [("film.gif", PillowWriter(fps=options.fps))]
     if shutil.which("ffmpeg"):
-        writers.append(("film.mp4", FFMpegWriter(fps=options.fps, extra_args=[
-            "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"])))
+        even = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"]
+        writers.append(("film.mp4", FFMpegWriter(
+            fps=options.fps, metadata={"comment": SIGNATURE}, extra_args=even)))
     for name, writer in writers:
         writer.setup(sheet.fig, options.output / name, dpi=90)
     for snapshot in snapshots:
@@ -515,13 +519,22 @@ def make_film(options, parameters, units):
             remove(contour)
     for _, writer in writers:
         writer.finish()
+    sign_gif(options.output / "film.gif")
     plt.close(sheet.fig)
     return [options.output / name for name, _ in writers]
 
 
+def sign_gif(path):
+    """Adds SIGNATURE as a comment before the byte that ends a GIF."""
+    data = path.read_bytes()
+    words = SIGNATURE.encode()
+    path.write_bytes(data[:-1] + b"\x21\xfe" + bytes([len(words)]) + words
+                     + b"\x00" + data[-1:])
+
+
 def save(fig, options, name):
     path = options.output / name
-    fig.savefig(path)
+    fig.savefig(path, metadata={"Software": SIGNATURE})
     plt.close(fig)
     return path
 

@@ -19,11 +19,6 @@ void output_make_directory(const char *directory);
 bool output_holds_tables(const char *directory);
 /* `directory`/`name`; the caller frees it with mem_free. Not collective. */
 char *output_path(const char *directory, const char *name);
-/* Remove what an earlier run left and a new one would not write over at once:
- * the snapshots from number `first` on; all of them, checkpoint, log and index
- * of snapshots. Collective. */
-void output_remove_snapshots(const char *directory, int first);
-void output_remove_run(const char *directory);
 
 /* What `write` prints (on rank 0; NULL: nothing) as a text on every rank, to
  * be freed with mem_free. Collective. */

@@ -169,9 +169,10 @@ void csv_integer(struct csv *csv, int64_t value) {
 static void warn_if_gone(const struct csv *csv) {
   struct stat status;
   if (fstat(fileno(csv->f), &status) != 0 || status.st_nlink > 0) return;
-  if (access(csv->path, F_OK) != 0) disk_fail(csv->path, errno);
+  if (disk_directory_is_gone(csv->path)) disk_fail(csv->path, ENOENT);
   WARN_ONCE(
-      "'%s' was replaced while the run went on, its further rows are lost",
+      "'%s' was removed or replaced while the run goes on: its further "
+      "rows are lost, and --restart will find it lacking",
       csv->path);
 }
 

@@ -100,41 +100,6 @@ char *output_path(const char *directory, const char *name) {
   return path;
 }
 
-/* Whether there was such a file; a directory that loses files while we write
- * is no reason to stop. */
-static bool remove_file(const char *directory, const char *name) {
-  char *path = output_path(directory, name);
-  bool removed = unlink(path) == 0;
-  mem_free(path);
-  return removed;
-}
-
-/* Nobody writes before the old files are gone. */
-static void wait_for_others(void) {
-  if (base_size() > 1) MPI_CHECK(MPI_Barrier(MPI_COMM_WORLD));
-}
-
-void output_remove_snapshots(const char *directory, int first) {
-  bool more = base_rank() == 0;
-  for (; more; first++) {
-    char name[32];
-    snprintf(name, sizeof name, "snapshot-%06d.h5", first);
-    more = remove_file(directory, name);
-  }
-  wait_for_others();
-}
-
-void output_remove_run(const char *directory) {
-  static const char *const name[] = {
-      "checkpoint.h5",  "checkpoint.h5.tmp", "run.log",
-      "snapshots.xdmf", "outlines.png",      "fields-final.png",
-      "film.gif",       "film.mp4",          "history.png"};
-  if (base_rank() == 0)
-    for (size_t k = 0; k < sizeof name / sizeof name[0]; k++)
-      remove_file(directory, name[k]);
-  output_remove_snapshots(directory, 0);
-}
-
 char *output_parameters(void (*write)(void *context, FILE *f), void *context) {
   char *text = NULL;
   size_t length = 0;

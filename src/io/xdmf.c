@@ -21,11 +21,7 @@ struct xdmf {
   size_t written; /* of the text, in the file */
 };
 
-static const char head[] =
-    "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n"
-    "<Xdmf Version=\"2.0\">\n  <Domain>\n"
-    "    <Grid Name=\"talus\" GridType=\"Collection\" "
-    "CollectionType=\"Temporal\">\n";
+static const char head[] = XDMF_HEAD;
 static const char tail[] = "    </Grid>\n  </Domain>\n</Xdmf>\n";
 
 struct xdmf *xdmf_new(void) {

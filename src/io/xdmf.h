@@ -9,6 +9,13 @@
 
 enum { XDMF_MAX_ARRAYS = 64 };
 
+/* How an index of ours begins. */
+#define XDMF_HEAD                                     \
+  "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n"      \
+  "<Xdmf Version=\"2.0\">\n  <Domain>\n"              \
+  "    <Grid Name=\"talus\" GridType=\"Collection\" " \
+  "CollectionType=\"Temporal\">\n"
+
 struct xdmf_array {
   char name[48];
   int columns; /* 1, or 3 for a vector */
