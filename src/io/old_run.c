@@ -21,7 +21,7 @@ static const struct {
   const char *name, *begin;
 } FILES[] = {
     {"series.csv", "step,time,dt,cells,"},
-    {"profile.csv", DIM == 2 ? "time,x,height\n" : "time,x,y,height\n"},
+    {"profile.csv", "time,x,"},
     {"parameters.csv", "key,value,unit,origin\n"},
     {"run.log", "talus "},
     {"snapshots.xdmf", XDMF_HEAD},

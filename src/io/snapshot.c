@@ -10,6 +10,7 @@
 #include "talus/error.h"
 #include "talus/field.h"
 #include "talus/hdf5_file.h"
+#include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/output.h"
 #include "vertices.h"
@@ -180,13 +181,18 @@ static void add_to_index(struct snapshots *snapshots, int number) {
   struct xdmf_grid grid = {.narrays = 0};
   char *path = snapshot_path(snapshots, number);
   struct hdf5_file *file = hdf5_open(MPI_COMM_WORLD, path);
-  mem_free(path);
-  if (file == NULL) return; /* taken away by its owner */
-  if (read_grid(file, &grid)) {
+  if (file != NULL && read_grid(file, &grid)) {
     snapshot_name(number, grid.file);
     xdmf_add(snapshots->index, &grid);
+  } else if (base_rank() == 0) {
+    fprintf(stderr,
+            "talus: warning: '%s' cannot be read, it is left out of "
+            "snapshots.xdmf\n",
+            path);
+    log_info("warning: '%s' cannot be read", path);
   }
-  hdf5_close(file, false);
+  if (file != NULL) hdf5_close(file, false);
+  mem_free(path);
 }
 
 static int compare_numbers(const void *a, const void *b) {
