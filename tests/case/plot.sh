@@ -63,8 +63,14 @@ for run in column box; do
   for name in outlines.png fields-final.png history.png film.gif; do
     grep -q "^$run/$name$" output || { echo "$run: no $name"; exit 1; }
     [ "$(wc -c < $run/$name)" -gt 5000 ] || { echo "$run/$name is small"; exit 1; }
+    grep -qa "talus plot" $run/$name || { echo "$run/$name is not signed"; exit 1; }
   done
 done
+# The pictures of a run that is replaced go with it.
+cp -r column replaced
+"$build/talus2d" run "$root/examples/column.lua" level=5 stop=0.1 -o replaced \
+  --quiet > output 2>&1
+if ls replaced/*.png replaced/*.gif 2> /dev/null; then exit 1; fi
 # A strip of a layer is too narrow for a title, and its surface is level.
 timeout 120 "$build/talus" run "$root/examples/bagnold.lua" stop=1 trees=4 \
   -o layer --quiet
