@@ -196,6 +196,7 @@ static void write_snapshot(struct run *run) {
 /* Everything after a step, and before the first one, but the checkpoint. */
 static void write_output(struct run *run) {
   double now = MPI_Wtime();
+  lock_verify();
   write_tables(run);
   now = lap(run, TIME_TABLES, now);
   write_snapshot(run);
@@ -204,6 +205,7 @@ static void write_output(struct run *run) {
 
 static void write_checkpoint(struct run *run) {
   double begin = MPI_Wtime();
+  lock_verify();
   struct run_state state = {.wall_seconds = wall_seconds(run),
                             .snapshots = snapshots_count(run->snapshots),
                             .series = series_sync(run->series),

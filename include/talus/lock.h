@@ -25,6 +25,11 @@ void lock_check(const char *directory);
  */
 void lock_take(const char *directory);
 
+/* Ends the program (FATAL) if the directory given to lock_take was removed,
+ * renamed or replaced since: what is written by its name would be lost, or
+ * spoil another run. Not collective; rank 0 looks. */
+void lock_verify(void);
+
 /* Gives the lock back, if there is one. Not collective. */
 void lock_release(void);
 

@@ -16,13 +16,17 @@
 #include "talus/log.h"
 #include "talus/memory.h"
 
-enum { WORDS_LENGTH = 256, TRIALS = 100 };
+enum { WORDS_LENGTH = 256, TRIALS = 100, PLACE_LENGTH = 4096 };
 
 /* What came of an attempt, on rank 0. */
 enum outcome { TAKEN, ABSENT, HELD, WITHOUT, REFUSED };
 
 static int held = -1;   /* descriptor of run.lock; -1: no lock is held */
 static char *held_path; /* owned */
+
+/* The directory, as it was when lock_take was called; "" before. */
+static char place[PLACE_LENGTH];
+static struct stat place_status;
 
 static char *lock_path(const char *directory) {
   size_t size = strlen(directory) + sizeof "/run.lock";
@@ -110,8 +114,10 @@ void lock_check(const char *directory) {
   conclude(directory, outcome == HELD ? HELD : ABSENT, words);
 }
 
-/* Rank 0: takes the lock, and remembers it. */
+/* Takes the lock on rank 0, and remembers it. */
 static enum outcome take(const char *directory, char words[WORDS_LENGTH]) {
+  if (stat(directory, &place_status) == 0)
+    snprintf(place, sizeof place, "%s", directory);
   char *path = lock_path(directory);
   int file = -1;
   const enum outcome outcome = try_lock(path, O_CREAT, &file, words);
@@ -140,7 +146,21 @@ void lock_take(const char *directory) {
   conclude(directory, outcome, words);
 }
 
+void lock_verify(void) {
+  struct stat status;
+  if (place[0] == '\0') return;
+  if (stat(place, &status) == 0 && status.st_ino == place_status.st_ino &&
+      status.st_dev == place_status.st_dev)
+    return;
+  FATAL(
+      "the directory '%s' was removed, renamed or replaced while the run went "
+      "on, so the run ends here; if it was renamed, --restart goes on from its "
+      "last checkpoint under the new name",
+      place);
+}
+
 void lock_release(void) {
+  place[0] = '\0';
   if (held < 0) return;
   unlink(held_path); /* while it is ours: who opens it now looks again */
   close(held);

@@ -165,11 +165,10 @@ void csv_integer(struct csv *csv, int64_t value) {
   write_cell(csv, text);
 }
 
-/* Looks whether what is written can still be found by its name. */
+/* Warns when what is written can no longer be found by its name. */
 static void warn_if_gone(const struct csv *csv) {
   struct stat status;
   if (fstat(fileno(csv->f), &status) != 0 || status.st_nlink > 0) return;
-  if (disk_directory_is_gone(csv->path)) disk_fail(csv->path, ENOENT);
   WARN_ONCE(
       "'%s' was removed or replaced while the run goes on: its further "
       "rows are lost, and --restart will find it lacking",

@@ -22,7 +22,7 @@ static char *directory_of(const char *path) {
   return directory;
 }
 
-bool disk_directory_is_gone(const char *path) {
+static bool directory_is_gone(const char *path) {
   struct stat status;
   char *directory = directory_of(path);
   const bool gone = stat(directory, &status) != 0 &&
@@ -32,7 +32,7 @@ bool disk_directory_is_gone(const char *path) {
 }
 
 const char *disk_advice(const char *path, int error) {
-  if (disk_directory_is_gone(path))
+  if (directory_is_gone(path))
     return "; its directory was removed or renamed while the run went on";
   if (error == ENOENT || error == ESTALE)
     return "; it was removed or renamed while the run went on";

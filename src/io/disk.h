@@ -3,11 +3,6 @@
 #ifndef TALUS_DISK_H
 #define TALUS_DISK_H
 
-#include <stdbool.h>
-
-/* Is the directory of a file no longer there? */
-bool disk_directory_is_gone(const char *path);
-
 /* Says what to try after `error`, an errno, on `path`: a directory that is gone
  * is named, a lack of space asked about; "" where the words of the system are
  * enough. The text is static. */

@@ -2,7 +2,6 @@
 #include "talus/old_run.h"
 
 #include <dirent.h>
-#include <errno.h>
 #include <mpi.h>
 #include <stdio.h>
 #include <string.h>
