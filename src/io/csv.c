@@ -45,7 +45,8 @@ static int judge(const char *path, const struct csv_expected *expected,
 static _Noreturn void refuse_header(const char *path) {
   USER_ERROR(
       "'%s' has other columns than this version of talus writes, so its rows "
-      "cannot be continued; move it away to --restart",
+      "cannot be continued; go on with the version that wrote it, or copy "
+      "checkpoint.h5 alone into a new directory and --restart there",
       path);
 }
 
