@@ -15,17 +15,19 @@
 struct simulation;
 
 /* c and tracers over dt, and u where c's sweeps carry it; u_old and its helper
- * nodes keep what u was. fields_save has been called since u, c or tracers
- * changed. Collective. */
-void fractions_advance(struct simulation *sim, double dt);
+ * nodes keep what u was. rate: largest 1/2 sum |u_f| A / V, 1/s; where rate dt
+ * exceeds 1, as a restart with new conditions may have it, sweeps are in parts
+ * from the first. fields_save has been called since u, c or tracers changed.
+ * Collective. */
+void fractions_advance(struct simulation *sim, double dt, double rate);
 
 /* Make the planes of c those of what it is now. c is filled. Collective. */
 void fractions_update_planes(struct simulation *sim);
 
 /* c lags half a step behind `time`. The first call takes it to `time` with
- * the present velocity, so that it can be measured; the second sets back what
- * it was, to the last bit, from sim->cell[2 DIM - 1]. Nothing else of the state
- * changes. Collective. */
+ * the present velocity, in parts where c would leave [0, 1], so that it can be
+ * measured; the second sets back what it was, to the last bit, from
+ * sim->cell[2 DIM - 1]. Nothing else of the state changes. Collective. */
 void fractions_synchronise(struct simulation *sim);
 void fractions_desynchronise(struct simulation *sim);
 

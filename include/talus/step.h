@@ -29,9 +29,10 @@
 struct simulation;
 
 /* Advance by one step of at most dt_max. A step in which a solve fails, or
- * the fields are no longer finite, is repeated with a smaller dt; returns
- * EXIT_DONE, or EXIT_NUMERICAL when that does not help: the state is then
- * that before the step. Collective. */
+ * the fields are no longer finite, or that was too long for the flow it has
+ * made (time_step.h), is repeated with a smaller dt; returns EXIT_DONE, or
+ * EXIT_NUMERICAL when that does not help: the state is then that before the
+ * step. Collective. */
 int step_advance(struct simulation *sim, double dt_max);
 
 /* Complete the state at t = 0 from c, u and a first u_f: u_f is projected,

@@ -7,6 +7,7 @@
 #include "talus/minmax.h"
 #include "talus/momentum.h"
 #include "talus/simulation.h"
+#include "talus/time_step.h"
 #include "talus/vof.h"
 
 /* The scratch cell field that keeps c during a sweep, or while it is
@@ -127,32 +128,54 @@ static void restore(struct simulation *sim) {
   sim->planes_hold = false;
 }
 
-void fractions_advance(struct simulation *sim, double dt) {
+/* Count the parts of at most `most`, up to round-off, in a Courant number. */
+static int parts_of(double courant, double most) {
+  return (int)max2(1, ceil(courant / most - 1e-9));
+}
+
+/* Sweep n times over dt / n, from the state that has been saved. u is filled.
+ */
+static void sweep_in_parts(struct simulation *sim, double dt, int n) {
+  mark_band(sim, n);
+  for (int k = 0; k < n; k++) {
+    if (k > 0) {
+      field_fill_many(sim->mesh, DIM, sim->u);
+      field_fill(sim->mesh, sim->c);
+    }
+    sweep_fractions(sim, dt / n);
+  }
+}
+
+void fractions_advance(struct simulation *sim, double dt, double rate) {
   const struct mesh *mesh = sim->mesh;
   const double divergence = sim->divergence_volume;
-  const int parts = (int)ceil(sim->params->cfl / VOF_CFL);
   field_fill_many(mesh, DIM, sim->u);
   for (int e = 0; e < DIM; e++) {
     memcpy(sim->u_old[e]->v, sim->u[e]->v,
            (size_t)mesh->ncells * sizeof(double));
   }
-  mark_band(sim, 1);
-  sweep_fractions(sim, dt);
-  if (parts == 1 || are_bounded(sim)) return;
+  sweep_in_parts(sim, dt, parts_of(rate * dt, 1));
+  if (rate * dt <= VOF_CFL || are_bounded(sim)) return;
   restore(sim);
   sim->divergence_volume = divergence;
-  mark_band(sim, parts);
-  for (int k = 0; k < parts; k++) {
-    if (k > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
-    sweep_fractions(sim, dt / parts);
-  }
+  sweep_in_parts(sim, dt, parts_of(rate * dt, VOF_CFL));
 }
 
 void fractions_synchronise(struct simulation *sim) {
-  memcpy(sim->cell[C_OLD]->v, sim->c->v,
-         (size_t)sim->mesh->nleaves * sizeof(double));
+  const struct mesh *mesh = sim->mesh;
+  double *before = sim->cell[C_OLD]->v;
+  memcpy(before, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
   if (sim->params->single_phase || sim->dt == 0) return;
   advance_tracer(sim, 0.5 * sim->dt, sim->c);
+  if (mesh_max(mesh, vof_excess(mesh, sim->c->v)) <= VOF_EMPTY) return;
+  const bool held = sim->planes_hold;
+  const double half = 0.5 * sim->dt;
+  const int parts = parts_of(half * time_step_rate(sim), VOF_CFL);
+  fractions_desynchronise(sim);
+  for (int k = 0; k < parts; k++, sim->planes_hold = false) {
+    advance_tracer(sim, half / parts, sim->c);
+  }
+  sim->planes_hold = held;
 }
 
 void fractions_desynchronise(struct simulation *sim) {

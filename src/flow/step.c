@@ -42,8 +42,9 @@
  * 1.6e-2 with all leaves. */
 #define HOLDS_GRAINS 0.01
 
-/* A step that fails is repeated so often, each time with this part of dt. */
-enum { RETRIES = 3 };
+/* A step that fails is repeated so often, each time with this part of dt; one
+ * that is too long for what it finds so often. */
+enum { RETRIES = 3, SHORTENINGS = 30 };
 #define RETRY_FACTOR 0.25
 
 static struct projection projection_of(struct simulation *sim) {
@@ -482,8 +483,8 @@ static void lap(struct simulation *sim, enum step_stage stage) {
 }
 
 /* Stages 3 to 8: the state at `time` + dt. */
-static void advance_state(struct simulation *sim, double dt, double dt_c) {
-  fractions_advance(sim, dt_c), lap(sim, STAGE_FRACTION);
+static void advance_state(struct simulation *sim, double dt, double rate) {
+  fractions_advance(sim, 0.5 * (sim->dt + dt), rate), lap(sim, STAGE_FRACTION);
   update_density(sim);
   update_acceleration(sim), lap(sim, STAGE_DENSITY);
   update_viscosity(sim, sim->u_old);
@@ -501,23 +502,42 @@ static void advance_state(struct simulation *sim, double dt, double dt_c) {
   add_wall_work(sim, dt);
 }
 
-int step_advance(struct simulation *sim, double dt_max) {
-  const double dissipated = sim->energy.dissipated;
-  const double divergence = sim->divergence_volume;
-  double dt, dt_c;
-  sim->mark = MPI_Wtime();
+/* Set back the state to that before the step; `before` has what fields_save
+ * does not. */
+static void set_back(struct simulation *sim, const struct simulation *before) {
+  fields_restore(&sim->fields, sim->mesh);
+  sim->planes_hold = false;
+  sim->energy.dissipated = before->energy.dissipated;
+  sim->divergence_volume = before->divergence_volume;
+}
+
+/* Take a step of at most dt_max, as short as it has to be; returns its dt, or
+ * 0, the state being that before the step. */
+static double find_step(struct simulation *sim, double dt_max) {
+  const struct simulation before = *sim;
+  int failures = 0;
   fields_save(&sim->fields, sim->mesh);
-  for (int attempt = 0;; attempt++) {
-    dt = time_step_choose(sim, dt_max, &dt_c), lap(sim, STAGE_OTHER);
-    advance_state(sim, dt, dt_c);
-    if (!has_failed(sim)) break;
-    fields_restore(&sim->fields, sim->mesh);
-    sim->planes_hold = false;
-    sim->energy.dissipated = dissipated;
-    sim->divergence_volume = divergence;
-    if (attempt == RETRIES) return EXIT_NUMERICAL;
-    dt_max = RETRY_FACTOR * dt;
+  for (int attempt = 0; attempt <= SHORTENINGS; attempt++) {
+    double rate;
+    const double dt = time_step_choose(sim, dt_max, &rate);
+    lap(sim, STAGE_OTHER);
+    advance_state(sim, dt, rate);
+    const bool failed = has_failed(sim);
+    dt_max = failed ? RETRY_FACTOR * dt : time_step_allowed(sim, dt);
+    if (dt_max >= dt) return dt;
+    set_back(sim, &before);
+    failures += failed;
+    if (failures > RETRIES) break;
+    log_info("step %lld: dt %.3g is repeated with %.3g", (long long)sim->step,
+             dt, dt_max);
   }
+  return 0;
+}
+
+int step_advance(struct simulation *sim, double dt_max) {
+  sim->mark = MPI_Wtime();
+  const double dt = find_step(sim, dt_max);
+  if (dt == 0) return EXIT_NUMERICAL;
   sim->time += dt;
   sim->dt = dt;
   sim->step++;

@@ -13,6 +13,10 @@
 /* A step that makes up for a last one too long is at least this part of the
  * bound. */
 #define DT_SHRINK 0.2
+/* A step that was too long for what it has found is repeated with this part of
+ * what its acceleration allows, but not with less than the second of dt. */
+#define DT_REPEAT 0.7
+#define DT_LEAST 0.01
 
 double time_step_boundary_speed(const struct simulation *sim, bool per_leaf) {
   const struct mesh *mesh = sim->mesh;
@@ -33,11 +37,9 @@ double time_step_boundary_speed(const struct simulation *sim, bool per_leaf) {
   return most;
 }
 
-/* Largest dt with 1/2 sum |u_f| A dt / V <= cfl in every cell, gas included,
- * as VOF wants it. */
-static double cfl_bound(const struct simulation *sim) {
+double time_step_rate(const struct simulation *sim) {
   const struct mesh *mesh = sim->mesh;
-  double rate = time_step_boundary_speed(sim, true);
+  double rate = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double sum = 0;
     for (int f = 0; f < NFACE; f++) {
@@ -45,7 +47,11 @@ static double cfl_bound(const struct simulation *sim) {
     }
     rate = max2(rate, 0.5 * sum / mesh->h[i]);
   }
-  rate = mesh_max(mesh, rate);
+  return mesh_max(mesh, rate);
+}
+
+/* Divide cfl by a rate; HUGE_VAL if nothing moves. */
+static double cfl_bound(const struct simulation *sim, double rate) {
   return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
 }
 
@@ -69,15 +75,33 @@ static double acceleration_bound(const struct simulation *sim) {
   return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;
 }
 
+/* Bound dt by sqrt(h/|g|) of the finest leaves, where there is a surface. */
+static double wave_bound(const struct params *params) {
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  if (params->single_phase || g2 == 0) return HUGE_VAL;
+  return sqrt(params->size / exp2(params->level_max) / sqrt(g2));
+}
+
 double time_step_choose(const struct simulation *sim, double dt_max,
-                        double *dt_c) {
-  const double bound = cfl_bound(sim);
-  double dt = min2(min2(dt_max, sim->params->dt_max),
-                   min2(bound, acceleration_bound(sim)));
+                        double *rate) {
+  const double boundary =
+      mesh_max(sim->mesh, time_step_boundary_speed(sim, true));
+  double dt = min2(dt_max, sim->params->dt_max);
+  dt = min2(dt, wave_bound(sim->params));
+  *rate = time_step_rate(sim);
+  dt = min2(dt, cfl_bound(sim, max2(boundary, *rate)));
+  dt = min2(dt, acceleration_bound(sim));
   if (sim->dt > 0) {
+    const double bound = cfl_bound(sim, *rate);
     dt = min2(dt, DT_GROWTH * sim->dt);
     dt = min2(dt, max2(2 * bound - sim->dt, DT_SHRINK * bound));
   }
-  *dt_c = min2(0.5 * (sim->dt + dt), bound);
   return dt;
+}
+
+double time_step_allowed(const struct simulation *sim, double dt) {
+  const double most = (2 - DT_SHRINK) * cfl_bound(sim, time_step_rate(sim));
+  /* from rest the rate grows as dt */
+  return dt <= most ? dt : dt * max2(DT_REPEAT * sqrt(most / dt), DT_LEAST);
 }

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sudden starts: the length of a step, and c in step with it. */
+#include "talus/time_step.h"
+
+#include <check.h>
+#include <string.h>
+
+#include "sim.h"
+#include "talus/error.h"
+#include "talus/fractions.h"
+#include "talus/memory.h"
+#include "talus/vof.h"
+#include "transport.h"
+
+Suite *time_step_suite(void);
+
+/* No bound of the last step tells what gas that falls from rest will do in a
+ * step of any length: that step itself does. */
+static double nowhere(void *context, const double x[3]) {
+  (void)context, (void)x;
+  return -1;
+}
+
+START_TEST(a_fall_from_rest_keeps_to_the_bound) {
+  struct params params = box_params(DIM == 2 ? 5 : 4);
+  double most = 0;
+  bool done = true;
+  params.shape = (struct function){nowhere, NULL};
+  params.gravity[DIM - 1] = 0;
+  params.gravity[0] = 1;
+  params.dt_max = 1e6;
+  params.pressure_level_given = true;
+  for (int side = 0; side < 2; side++) {
+    params.boundary[side].type = BOUNDARY_PERIODIC;
+  }
+  struct simulation *sim = simulation_new(&params);
+  for (int k = 0; k < 6 && done; k++) {
+    done = step_advance(sim, 1e6) == EXIT_DONE;
+    most = fmax(most, sim->dt * time_step_rate(sim));
+  }
+  const double time = sim->time, speed = largest(sim, sim->u);
+  simulation_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(most, 1.8 * params.cfl * (1 + 1e-9));
+  ck_assert_double_ge(most, params.cfl); /* and are as long as they may be */
+  ck_assert_double_eq_tol(speed, time, 1e-6 * time);
+}
+END_TEST
+
+/* The flow of Taylor and Green, which squeezes a slanted bar of grains. */
+static int axis[] = {0, 1};
+static double squeeze(void *context, const double x[3]) {
+  const double wave = 6.283185307179586;
+  return *(const int *)context == 0 ? sin(wave * x[0]) * cos(wave * x[1])
+                                    : -cos(wave * x[0]) * sin(wave * x[1]);
+}
+static double bar(void *context, const double x[3]) {
+  (void)context;
+  return 0.3 - fabs(x[0] - 0.47) - 1.3 * fabs(x[1] - 0.47);
+}
+
+/* Over a time in which the flow crosses three cells: bit 0, to be looked at; 1,
+ * planes of c are there, or not. */
+START_TEST(c_is_in_0_1_however_long_it_has_lagged) {
+  struct params params = periodic_params(4);
+  params.single_phase = false;
+  params.pressure_level_given = true;
+  params.shape = (struct function){bar, NULL};
+  for (int d = 0; d < 2; d++) {
+    params.velocity[d] = (struct function){squeeze, &axis[d]};
+  }
+  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->mesh;
+  const double before = integral(mesh, sim->c->v);
+  const double rate = time_step_rate(sim);
+  double *c = MEM_NEW(double, mesh->nleaves);
+  memcpy(c, sim->c->v, (size_t)mesh->nleaves * sizeof *c);
+  field_fill(mesh, sim->c);
+  sim->planes_hold = false;
+  if (_i & 2) fractions_update_planes(sim);
+  if (_i & 1) {
+    sim->dt = 6 / rate;
+    fractions_synchronise(sim);
+  } else {
+    fields_save(&sim->fields, mesh);
+    fractions_advance(sim, 3 / rate, rate);
+  }
+  const double after = integral(mesh, sim->c->v);
+  const double excess = mesh_max(mesh, vof_excess(mesh, sim->c->v));
+  double moved = 0, left = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    moved = fmax(moved, fabs(sim->c->v[i] - c[i]));
+  }
+  if (_i & 1) fractions_desynchronise(sim);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    left = fmax(left, fabs(sim->c->v[i] - c[i]));
+  }
+  moved = mesh_max(mesh, moved), left = mesh_max(mesh, left);
+  mem_free(c);
+  simulation_destroy(sim);
+  ck_assert_double_eq_tol(after, before, 1e-13);
+  ck_assert_double_le(excess, VOF_EMPTY);
+  ck_assert_double_gt(moved, 0.9);
+  if (_i & 1) ck_assert_double_eq(left, 0);
+}
+END_TEST
+
+Suite *time_step_suite(void) {
+  Suite *suite = suite_create("time_step");
+  TCase *tc = tcase_create("time_step");
+  tcase_add_test(tc, a_fall_from_rest_keeps_to_the_bound);
+  tcase_add_loop_test(tc, c_is_in_0_1_however_long_it_has_lagged, 0, 4);
+  suite_add_tcase(suite, tc);
+  return suite;
+}
