@@ -138,13 +138,15 @@ static void write_row(struct run *run, const struct diagnostics *d) {
                            .wall_seconds = wall_seconds(run),
                            .droplets = d->droplets.n,
                            .droplet_volume = d->droplets.volume,
-                           .numerical = energy->initial - d->kinetic -
-                                        d->potential - energy->dissipated,
+                           .numerical = energy->initial + energy->changed -
+                                        d->kinetic - d->potential -
+                                        energy->dissipated,
                            .divergence_volume = sim->divergence_volume,
                            .pressure_residual = sim->pressure.residual_after,
                            .viscous_residual = sim->viscous.residual_after,
                            .mean_shear_rate = d->shear_rate,
-                           .repeat_change = sim->repeat_change};
+                           .repeat_change = sim->repeat_change,
+                           .work_of_changes = energy->changed};
   series_write(run->series, &row);
 }
 
@@ -321,6 +323,7 @@ static struct run *run_new(const struct params *params,
                  : simulation_new(params);
   check_tables(run);
   open_files(run);
+  if (options->restart) conditions_renew(run->sim);
   run->first_step = run->sim->step;
   run->wall_begin = run->wall_checkpoint = lap(run, TIME_START, begin);
   say_begin(run);

@@ -29,6 +29,7 @@ static int list_scalars(struct simulation *sim, struct run_state *state,
                         struct verdicts *verdicts,
                         struct checkpoint_scalar list[MAX_SCALARS]) {
   struct energy *energy = &sim->energy;
+  struct conditions *conditions = &sim->conditions;
   struct solve_stats *p = &sim->pressure, *q = &sim->predictor,
                      *v = &sim->viscous;
   const double any = DBL_MAX, most = INFINITY; /* of a failed solve */
@@ -41,6 +42,10 @@ static int list_scalars(struct simulation *sim, struct run_state *state,
       {"potential", &energy->potential, NULL, -any, any},
       {"dissipated", &energy->dissipated, NULL, -any, any},
       {"initial_energy", &energy->initial, NULL, -any, any},
+      {"changed_energy", &energy->changed, NULL, -any, any},
+      {"conditions_energy", &conditions->energy, NULL, -any, any},
+      {"conditions_force", &conditions->force, NULL, 0, any},
+      {"conditions_inflow", &conditions->inflow, NULL, 0, any},
       {"divergence_volume", &sim->divergence_volume, NULL, -any, any},
       {"repeat_change", &sim->repeat_change, NULL, 0, most},
       {"wall_seconds", &state->wall_seconds, NULL, 0, any},
@@ -91,6 +96,7 @@ void run_state_write(const char *path, struct simulation *sim,
     make_writable(solve[k]);
   }
   if (isnan(sim->repeat_change)) sim->repeat_change = INFINITY;
+  conditions_measure(sim, &sim->conditions);
   struct checkpoint_scalar list[MAX_SCALARS];
   int n = list_scalars(sim, state, &verdicts, list);
   checkpoint_write(path, sim->mesh, &sim->fields, n, list, parameters);

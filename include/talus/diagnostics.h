@@ -33,6 +33,9 @@ struct diagnostics {
  * same on all ranks. Free with diagnostics_free. */
 void diagnostics_measure(const struct simulation *sim,
                          struct diagnostics *diagnostics);
+/* The energies alone. Collective. */
+void diagnostics_energy(const struct simulation *sim, double *kinetic,
+                        double *potential);
 void diagnostics_free(struct diagnostics *diagnostics);
 
 #endif

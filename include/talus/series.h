@@ -20,13 +20,15 @@ struct series_row {
   double wall_seconds;                             /* since the first step */
   int64_t droplets;      /* sets of grains apart from the heap */
   double droplet_volume; /* m^DIM */
-  double numerical; /* energy lost to the scheme: initial - kinetic - potential
-                       - dissipated */
+  double numerical; /* energy lost to the scheme: initial + work_of_changes -
+                       kinetic - potential - dissipated */
   double divergence_volume; /* sum over steps of sum c div u dt V, m^DIM */
   double pressure_residual, viscous_residual; /* in units of the tolerance */
   double mean_shear_rate; /* of the grains, 1/s: tells when they come to rest */
   double repeat_change;   /* of the velocity in the last Picard repetition, m/s,
                              0 without */
+  double work_of_changes; /* energy that restarts with another gravity or
+                             density have added */
 };
 
 struct series;

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "talus/conditions.h"
 #include "talus/field.h"
 #include "talus/params.h"
 #include "talus/solve.h"
@@ -26,6 +27,7 @@ struct energy {
   double kinetic, potential;
   double dissipated; /* viscous work since t = 0 */
   double initial;    /* kinetic + potential at t = 0 */
+  double changed;    /* added by restarts with other conditions since then */
 };
 
 /* Stages of a step (step.c), for --timing. */
@@ -92,7 +94,8 @@ struct simulation {
                               worst residual */
   double repeat_change; /* of |u_f|, m/s, in the last Picard repetition */
   struct energy energy;
-  double scale;             /* largest speed, of the viscous tolerance */
+  struct conditions conditions; /* of the checkpoint, on a restart */
+  double scale;                 /* largest speed, of the viscous tolerance */
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
 
   double seconds[NSTAGES]; /* wall-clock time on this rank since the start */

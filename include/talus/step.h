@@ -26,6 +26,8 @@
 #ifndef TALUS_STEP_H
 #define TALUS_STEP_H
 
+#include "talus/mesh.h"
+
 struct simulation;
 
 /* Advance by one step of at most dt_max. A step in which a solve fails, or
@@ -39,5 +41,10 @@ int step_advance(struct simulation *sim, double dt_max);
  * p and g are those of the grains at rest (no viscosity), to round-off.
  * Collective. */
 void step_start(struct simulation *sim);
+
+/* Find gravity less pressure gradient over density, of p with the conditions
+ * as they are: g[d] [ncells], any of sim->cell. The density is made anew.
+ * Collective. */
+void step_acceleration(struct simulation *sim, double *const g[DIM]);
 
 #endif

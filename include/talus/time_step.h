@@ -13,7 +13,7 @@
  * flow that starts suddenly. So a step whose own u_f passes the bound on
  * advection by more than 1.8 is repeated with a shorter dt: up to there the
  * next step can make the mean of both dt keep to the bound. In the examples no
- * step is.
+ * step is; a restart with other conditions is a new start (conditions.h).
  *
  * What cfl costs and gives (fractions.h says why it may exceed 1/2): collapse
  * by `talus run examples/column.lua cfl=...`.

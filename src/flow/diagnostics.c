@@ -90,6 +90,15 @@ static void measure_sums(const struct simulation *sim, const double *c,
   diagnostics->max_speed = sqrt(mesh_max(mesh, fastest));
 }
 
+void diagnostics_energy(const struct simulation *sim, double *kinetic,
+                        double *potential) {
+  struct diagnostics diagnostics;
+  field_fill(sim->mesh, sim->c);
+  measure_sums(sim, sim->c->v, &diagnostics);
+  *kinetic = diagnostics.kinetic;
+  *potential = diagnostics.potential;
+}
+
 void diagnostics_measure(const struct simulation *sim,
                          struct diagnostics *diagnostics) {
   const struct mesh *mesh = sim->mesh;

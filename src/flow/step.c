@@ -42,6 +42,9 @@
  * 1.6e-2 with all leaves. */
 #define HOLDS_GRAINS 0.01
 
+/* A divergence below this part of the rates of flow is round-off. */
+#define SOLENOIDAL 1e-12
+
 /* A step that fails is repeated so often, each time with this part of dt; one
  * that is too long for what it finds so often. */
 enum { RETRIES = 3, SHORTENINGS = 30 };
@@ -96,21 +99,25 @@ static void update_density(struct simulation *sim) {
                      sim->alpha_f->v, sim->gravity_f->v);
 }
 
-/* g of the last pressure with the density as it is now, in leaves that hold
- * grains: what the projection then changes of g, the viscous solve has not
- * seen. In gas that grains have just left their pressure would do far too much
- * (dense_square), so it keeps its g. */
-static void update_acceleration(struct simulation *sim) {
-  const struct mesh *mesh = sim->mesh;
+/* Find g of the last pressure with density, gravity and boundaries as they are.
+ */
+static void find_acceleration(struct simulation *sim, double *const g[DIM]) {
   const struct projection projection = projection_of(sim);
+  field_fill(sim->mesh, sim->p);
+  poisson_flux(sim->mesh, projection.alpha_f, sim->p->v, projection.flux);
+  projection_acceleration(&projection, sim->face[1]->v, g);
+}
+
+/* Give leaves that hold grains this g: what the projection then changes of g,
+ * the viscous solve has not seen. In gas that grains have just left their
+ * pressure would do far too much (dense_square), so it keeps its g. */
+static void update_acceleration(struct simulation *sim) {
   double *g[DIM];
   if (sim->params->single_phase) return;
   field_arrays(sim->cell, g);
-  field_fill(mesh, sim->p);
-  poisson_flux(mesh, projection.alpha_f, sim->p->v, projection.flux);
-  projection_acceleration(&projection, sim->face[1]->v, g);
+  find_acceleration(sim, g);
   for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
       if (sim->c->v[i] > HOLDS_GRAINS) sim->g[e]->v[i] = g[e][i];
     }
   }
@@ -572,11 +579,18 @@ static struct solve_stats static_pressure(struct simulation *sim) {
   return stats;
 }
 
+void step_acceleration(struct simulation *sim, double *const g[DIM]) {
+  update_density(sim);
+  find_acceleration(sim, g);
+}
+
 void step_start(struct simulation *sim) {
   sim->planes_hold = false;
   update_density(sim);
   const double divergence = clean_divergence(sim->mesh, sim->u_f->v);
-  if (divergence > 0) make_solenoidal(sim, 1 / divergence, sim->u_f->v);
+  if (divergence > SOLENOIDAL * time_step_rate(sim)) {
+    make_solenoidal(sim, 1 / divergence, sim->u_f->v);
+  }
   sim->pressure = static_pressure(sim);
   field_fill_many(sim->mesh, DIM, sim->u);
   update_viscosity(sim, sim->u);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sim.h"
+#include "talus/conditions.h"
 #include "talus/error.h"
 #include "talus/fractions.h"
 #include "talus/memory.h"
@@ -105,11 +106,78 @@ START_TEST(c_is_in_0_1_however_long_it_has_lagged) {
 }
 END_TEST
 
+/* A bed at rest, stopped after a long step. */
+static double height = 0.53;
+static struct simulation *bed_at_rest(struct params *params) {
+  *params = box_params(DIM == 2 ? 5 : 4);
+  params->shape = (struct function){below, &height};
+  params->tolerance_pressure = params->tolerance_viscous = 1e-12;
+  params->boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
+  struct simulation *sim = simulation_new(params);
+  ck_assert_int_eq(step_advance(sim, 0.4), EXIT_DONE);
+  conditions_measure(sim, &sim->conditions);
+  return sim;
+}
+
+/* With ten times the gravity it stays at rest, and the energy that this brings
+ * is booked. */
+START_TEST(another_gravity_is_a_new_start) {
+  struct params params;
+  struct simulation *sim = bed_at_rest(&params);
+  const double before = sim->conditions.energy;
+  params.gravity[DIM - 1] *= 10;
+  conditions_renew(sim);
+  const double changed = sim->energy.changed, dt = sim->dt;
+  bool done = true;
+  for (int k = 0; k < 5; k++)
+    done = done && step_advance(sim, 0.4) == EXIT_DONE;
+  const double speed = largest(sim, sim->u);
+  simulation_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_eq_tol(changed, 9 * before, 1e-12 * before);
+  ck_assert_double_eq(dt, 0);
+  ck_assert_double_le(speed, 1e-10);
+}
+END_TEST
+
+/* A tilt lets it go: dt is that of a start. */
+START_TEST(a_tilt_is_a_sudden_start) {
+  struct params params;
+  struct simulation *sim = bed_at_rest(&params);
+  params.gravity[0] = 1;
+  conditions_renew(sim);
+  const bool done = step_advance(sim, 0.4) == EXIT_DONE;
+  const double dt = sim->dt, h = sim->mesh->h[0];
+  simulation_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(dt, 0.1 * sqrt(h));
+}
+END_TEST
+
+START_TEST(the_same_conditions_change_nothing) {
+  struct params params;
+  struct simulation *sim = bed_at_rest(&params);
+  const double dt = sim->dt;
+  const size_t bytes = (size_t)sim->mesh->nleaves * sizeof(double);
+  double *p = MEM_NEW(double, sim->mesh->nleaves);
+  memcpy(p, sim->p->v, bytes);
+  conditions_renew(sim);
+  const bool same = sim->dt == dt && sim->energy.changed == 0 &&
+                    memcmp(p, sim->p->v, bytes) == 0;
+  mem_free(p);
+  simulation_destroy(sim);
+  ck_assert(same);
+}
+END_TEST
+
 Suite *time_step_suite(void) {
   Suite *suite = suite_create("time_step");
   TCase *tc = tcase_create("time_step");
   tcase_add_test(tc, a_fall_from_rest_keeps_to_the_bound);
   tcase_add_loop_test(tc, c_is_in_0_1_however_long_it_has_lagged, 0, 4);
+  tcase_add_test(tc, another_gravity_is_a_new_start);
+  tcase_add_test(tc, a_tilt_is_a_sudden_start);
+  tcase_add_test(tc, the_same_conditions_change_nothing);
   suite_add_tcase(suite, tc);
   return suite;
 }
