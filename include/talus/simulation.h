@@ -20,6 +20,7 @@ enum { SIMULATION_MAX_KNOWN = 8 };
 struct clean;
 struct forest;
 struct hierarchy;
+struct level_raster;
 struct skin;
 
 /* Energies of the grains, per unit width in 2D, in J/m (J in 3D). */
@@ -50,6 +51,8 @@ struct simulation {
   struct hierarchy *hierarchy;
   struct clean *clean;
   struct fields fields;
+  struct level_raster *level_raster[PARAMS_MAX_CRITERIA]; /* of those that are
+                              functions of position; NULL until asked for */
 
   /* State, kept over adaptation and restart */
   struct field *c; /* volume fraction of grains */

@@ -5,6 +5,7 @@
 
 #include "talus/error.h"
 #include "talus/forest.h"
+#include "talus/level_raster.h"
 #include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
@@ -93,14 +94,17 @@ static void want_estimate(struct simulation *sim,
   }
 }
 
-static void want_function(const struct simulation *sim,
-                          const struct criterion *criterion,
+static void want_function(struct simulation *sim,
+                          const struct criterion *criterion, int number,
                           struct wanted *wanted) {
+  struct level_raster **raster = &sim->level_raster[number];
+  if (!*raster) {
+    *raster = level_raster_new(sim->mesh->comm, forest_layout(sim->forest),
+                               &criterion->function, sim->params->level_max);
+  }
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    double x[3] = {0};
-    for (int d = 0; d < DIM; d++) x[d] = sim->mesh->x[i][d];
-    int level = (int)floor(
-        criterion->function.eval(criterion->function.context, x) + 0.5);
+    int level =
+        level_raster_most(*raster, sim->mesh->x[i], sim->mesh->level[i]);
     if (level > criterion->level) level = criterion->level;
     want(wanted, i, level, level);
   }
@@ -121,7 +125,7 @@ static void apply_criteria(struct simulation *sim, struct wanted *wanted) {
         want_estimate(sim, criterion, wanted);
         break;
       case CRITERION_FUNCTION:
-        want_function(sim, criterion, wanted);
+        want_function(sim, criterion, k, wanted);
         break;
     }
   }

@@ -9,6 +9,7 @@
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/hierarchy.h"
+#include "talus/level_raster.h"
 #include "talus/memory.h"
 #include "talus/shapes.h"
 #include "talus/skin.h"
@@ -253,6 +254,9 @@ struct simulation *simulation_new_on(const struct params *params,
 void simulation_destroy(struct simulation *sim) {
   if (!sim) return;
   fields_destroy(&sim->fields);
+  for (int k = 0; k < PARAMS_MAX_CRITERIA; k++) {
+    level_raster_destroy(sim->level_raster[k]);
+  }
   clean_destroy(sim->clean);
   skin_destroy(sim->skin);
   hierarchy_destroy(sim->hierarchy);
