@@ -106,6 +106,8 @@ static int command_check(int argc, char *argv[]) {
   struct case_file *file = load_case(&line);
   if (base_rank() == 0) {
     case_print(file, stdout);
+    for (int k = 0; k < case_params(file)->ncovers; k++)
+      printf("%s\n", case_params(file)->cover[k]);
     fflush(stdout);
     if (!case_finds_grains(file))
       fprintf(stderr,

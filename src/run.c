@@ -283,6 +283,8 @@ static void say_begin(const struct run *run) {
   log_info("talus %s, %d-dimensional, %d rank%s, %s", TALUS_VERSION, DIM,
            base_size(), base_size() == 1 ? "" : "s", date);
   log_info("%s: %s", run->params->name, run->params->title);
+  for (int k = 0; k < run->params->ncovers; k++)
+    log_info("%s", run->params->cover[k]);
   log_info("%s at step %" PRId64 ", time %.10g with %" PRId64 " cells",
            run->options->restart ? "restart" : "start", sim->step, sim->time,
            forest_nleaves_global(sim->forest));

@@ -11,6 +11,7 @@
 #include "talus/checkpoint.h"
 #include "talus/error.h"
 #include "talus/forest.h"
+#include "talus/openings.h"
 #include "talus/params.h"
 #include "talus/simulation.h"
 
@@ -138,5 +139,6 @@ struct simulation *run_state_read(const char *path, const struct params *params,
     if (sim->fields.field[k]->restart &&
         sim->fields.field[k]->location == FIELD_CELL)
       field_fill(sim->mesh, sim->fields.field[k]);
+  openings_refine(sim);
   return sim;
 }

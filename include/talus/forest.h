@@ -18,14 +18,28 @@ enum { FOREST_MAX_LEVEL = DIM == 2 ? 24 : 16 };
 
 struct forest;
 
+/* The patches that share a boundary face, by one of which (the one that the
+ * face belongs to) each field has its condition. The value is the mean over
+ * all: by the part of the area that a patch covers, or (BC_CARRIED) by what
+ * flows in through it. */
+enum { PATCH_SHARES = 4 };
+struct patch_shares {
+  int n; /* 0: the face belongs to one patch alone */
+  int8_t patch[PATCH_SHARES];
+  double part[PATCH_SHARES]; /* of the area */
+  double flux[PATCH_SHARES]; /* part of what flows in */
+};
+
 struct forest_layout {
   double size;        /* edge of a tree, m */
   double origin[DIM]; /* lower corner of the brick, m */
   int trees[DIM];     /* trees along each axis, >= 1 */
   bool periodic[DIM];
-  /* Patch of a boundary face: `side` (2d lower, 2d+1 upper side of axis d)
-   * or another id below MESH_MAX_PATCHES; NULL: the side. */
-  int (*patch)(void *context, int side, const double x[3]);
+  /* Patch of a boundary face with centre x and edge h: `side` (2d lower, 2d+1
+   * upper side of axis d) or another id below MESH_MAX_PATCHES; NULL: the
+   * side. Fills `shares`, which comes with n = 0, if there are several. */
+  int (*patch)(void *context, int side, const double x[3], double h,
+               struct patch_shares *shares);
   void *patch_context;
 };
 

@@ -34,7 +34,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-struct forest;
+#include "talus/forest.h"
 
 enum {
   NCHILD = 1 << DIM,
@@ -54,12 +54,21 @@ static inline int stencil_face(int f) {
 /* Value of a field at a boundary, per patch. The ghost value is
  *   a inner + b, chosen so that at the wall
  *   DIRICHLET: phi = value; NEUMANN: dphi/dn = value (n outwards);
- *   ROBIN: phi - value = -length dphi/dn (slip length, >= 0). */
-enum bc_type { BC_NEUMANN, BC_DIRICHLET, BC_ROBIN };
+ *   ROBIN: phi - value = -length dphi/dn (slip length, >= 0);
+ *   CARRIED: phi = value, of what flows in.
+ * On a face that patches share (forest.h) the value is their mean; patches with
+ * NEUMANN add nothing to it. */
+enum bc_type { BC_NEUMANN, BC_DIRICHLET, BC_ROBIN, BC_CARRIED };
 struct bc {
   enum bc_type type;
   double value;
   double length;
+};
+
+/* A boundary node beyond faces that patches share. */
+struct shared_node {
+  int32_t node;                    /* less begin_boundary */
+  struct patch_shares across[DIM]; /* of the face along each axis */
 };
 
 struct mesh_exchange; /* private: message plans */
@@ -106,6 +115,8 @@ struct mesh {
   int32_t *boundary_source;         /* node mirrored */
   int8_t (*boundary_patch)[DIM];    /* patch crossed along each axis, or -1 */
   double *boundary_h;               /* edge of the node */
+  int32_t nshared;
+  struct shared_node *shared; /* [nshared] */
   struct mesh_exchange *exchange;
 
   int level_finest;           /* over all ranks */

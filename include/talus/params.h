@@ -14,12 +14,15 @@
 
 #include "talus/rheology.h"
 
+struct side_map;
+
 enum {
   PARAMS_MAX_BOUNDARIES = 16, /* 6 sides, then patches named by the case */
   PARAMS_MAX_TRACERS = 8,
   PARAMS_MAX_TIMES = 256,
   PARAMS_MAX_CRITERIA = 8,
-  PARAMS_NAME_LENGTH = 64
+  PARAMS_NAME_LENGTH = 64,
+  PARAMS_LINE_LENGTH = 512
 };
 
 /* A scalar function of position, eval == NULL when absent. */
@@ -38,6 +41,7 @@ enum boundary_type {
 };
 
 struct boundary {
+  char name[PARAMS_NAME_LENGTH]; /* of a patch */
   enum boundary_type type;
   double velocity[3];
   double pressure;
@@ -102,6 +106,12 @@ struct params {
    * (>= 6 for a patch, or `side`); NULL: every face takes its side's. */
   int (*boundary_select)(void *context, int side, const double x[3]);
   void *boundary_context;
+  /* Where they hold, on sides that are divided (side_map.h); NULL: one boundary
+   * all over. Owned by whoever made the struct. */
+  const struct side_map *side_map[6];
+  /* What of each side the patches cover, in words */
+  char cover[PARAMS_MAX_BOUNDARIES][PARAMS_LINE_LENGTH];
+  int ncovers;
 
   /* Physics */
   double gravity[3];
@@ -125,8 +135,9 @@ struct params {
   double theta;              /* 1: backward Euler, 1/2: Crank-Nicolson */
   enum limiter limiter;      /* of momentum advection away from the surface */
   struct criterion criterion[PARAMS_MAX_CRITERIA];
-  int ncriteria;   /* 0: uniform at level_max */
-  int adapt_every; /* at most this many steps; 0: when needed */
+  int ncriteria;     /* 0: uniform at level_max */
+  int adapt_every;   /* at most this many steps; 0: when needed */
+  int opening_level; /* of the faces of openings, at least (openings.h) */
   int64_t max_cells;
 
   /* Output */

@@ -87,7 +87,7 @@ struct simulation {
 
   bool closed[MESH_MAX_PATCHES]; /* patches whose normal velocity is given */
   bool open[MESH_MAX_PATCHES];   /* the others */
-  bool pressure_set;             /* by some boundary */
+  bool pressure_set;             /* by some face of the mesh */
 
   double time, dt;
   int64_t step;

@@ -117,8 +117,10 @@ void boundary_read_side(struct case_file *file, const struct key *key) {
 
 static struct boundary *new_patch(struct case_file *file, const char *name) {
   struct params *params = &file->params;
+  struct boundary *boundary = &params->boundary[params->nboundaries++];
   snprintf(file->patch[file->npatches++], PARAMS_NAME_LENGTH, "%s", name);
-  return &params->boundary[params->nboundaries++];
+  snprintf(boundary->name, sizeof boundary->name, "%s", name);
+  return boundary;
 }
 
 /* The solver needs one per axis, as slip depends on the normal. */
@@ -184,14 +186,25 @@ static void check_periodic(struct case_file *file) {
   }
 }
 
+/* A box has one pressure: that of its outflows, or where there are none its
+ * level. */
+static void check_pressure_twice(struct case_file *file) {
+  char path[PATH_LENGTH];
+  if (!file->params.pressure_level_given) return;
+  if (!patches_find_outflow(file, path)) return;
+  read_fail_at(file, "boundary.pressure_level",
+               "boundary.pressure_level = %g is for a box in which no boundary "
+               "sets the pressure, but %s is an outflow and does: take one of "
+               "the two away",
+               file->params.pressure_level, path);
+}
+
 /* The closures need the pressure itself, not only its gradient. */
 static void check_pressure_level(struct case_file *file) {
   struct params *params = &file->params;
+  char path[PATH_LENGTH];
   if (params->pressure_level_given) return;
-  for (int i = 0; i < params->nboundaries; i++)
-    if ((i < 2 * params->dimension || i >= 6) &&
-        params->boundary[i].type == BOUNDARY_OUTFLOW)
-      return;
+  if (patches_find_outflow(file, path)) return;
   if (!closure_depends_on_pressure(&params->grains.rheology) &&
       (params->single_phase ||
        !closure_depends_on_pressure(&params->gas.rheology)))
@@ -214,5 +227,7 @@ void boundary_check(struct case_file *file) {
     params->boundary_context = file;
   }
   check_periodic(file);
+  patches_map(file);
+  check_pressure_twice(file);
   check_pressure_level(file);
 }

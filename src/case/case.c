@@ -84,6 +84,7 @@ void case_destroy(struct case_file *file) {
   rheology_release(&file->params.grains.rheology);
   rheology_release(&file->params.gas.rheology);
   rows_destroy(file);
+  patches_destroy(file);
   sandbox_destroy(file->sandbox);
   mem_free(file->text);
   mem_free(file->path);

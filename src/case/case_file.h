@@ -48,6 +48,13 @@ struct case_function {
   char name[PARAMS_NAME_LENGTH]; /* what it returned last, if a name */
 };
 
+/* A side that a function divides. */
+struct case_side {
+  struct case_file *file; /* borrowed */
+  int side;
+  struct side_map *map; /* owned; NULL: one boundary all over */
+};
+
 struct case_file {
   char *path, *text;       /* owned */
   struct sandbox *sandbox; /* owned */
@@ -67,6 +74,7 @@ struct case_file {
   struct case_function *side_function[6]; /* NULL: one boundary all over */
   char patch[CASE_MAX_PATCHES][PARAMS_NAME_LENGTH];
   int npatches;
+  struct case_side side[6];
   double velocity[3];      /* of a uniform initial state */
   bool loading;            /* all ranks do the same */
   char note[VALUE_LENGTH]; /* "": none */
@@ -157,6 +165,16 @@ bool closure_depends_on_pressure(const struct rheology *rheology);
 void boundary_read_side(struct case_file *file, const struct key *key);
 void boundary_read_patches(struct case_file *file);
 void boundary_check(struct case_file *file);
+
+/* patches.c */
+
+/* Map the sides that functions divide, and put into words what the patches
+ * cover. A patch that is narrower than a face is an error. */
+void patches_map(struct case_file *file);
+void patches_destroy(struct case_file *file);
+/* Path of a boundary that is an outflow on some part of some side; false if
+ * there is none. */
+bool patches_find_outflow(const struct case_file *file, char path[PATH_LENGTH]);
 
 /* criteria.c */
 void criteria_read(struct case_file *file, const struct key *key);

@@ -83,7 +83,7 @@ static void read_criterion(struct case_file *file, const char *path) {
 }
 
 void criteria_read(struct case_file *file, const struct key *key) {
-  static const char *const NAMES[] = {"every", "max_cells"};
+  static const char *const NAMES[] = {"every", "max_cells", "opening_level"};
   lua_State *L = file->L;
   if (lua_isnil(L, -1)) {
     lua_pop(L, 1);
@@ -93,7 +93,7 @@ void criteria_read(struct case_file *file, const struct key *key) {
     read_fail(file, key->path,
               "a list of criteria is needed, as in {{\"interface\", width = "
               "3}, {\"inside\"}}");
-  read_known_only(file, key->path, 2, NAMES, PARAMS_MAX_CRITERIA);
+  read_known_only(file, key->path, 3, NAMES, PARAMS_MAX_CRITERIA);
   int n = (int)lua_rawlen(L, -1);
   for (int i = 0; i < n; i++) {
     char path[PATH_LENGTH];

@@ -89,6 +89,10 @@ static const struct key KEYS[] = {
     {"adapt.every", KEY_INTEGER, .low = 0, .high = 1e6, DEFAULT "0",
      .unit = "steps", .offset = AT(adapt_every),
      .help = "steps between adaptations at most; 0: when the flow needs it"},
+    {"adapt.opening_level", KEY_LEVEL, SOME_LEVEL, DEFAULT "domain.level",
+     .unit = "", .offset = AT(opening_level),
+     .help = "of faces where boundaries meet on a side, and of narrow "
+             "inflows and outflows"},
     {"adapt.max_cells", KEY_COUNT, .low = 1, .high = 1e15, DEFAULT "1e8",
      .unit = "cells", .offset = AT(max_cells),
      .help = "no refinement beyond this number"},

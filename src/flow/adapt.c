@@ -9,6 +9,7 @@
 #include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
+#include "talus/openings.h"
 #include "talus/properties.h"
 #include "talus/remap.h"
 #include "talus/simulation.h"
@@ -110,8 +111,16 @@ static void want_function(struct simulation *sim,
   }
 }
 
+static void want_openings(const struct simulation *sim, struct wanted *wanted) {
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    const int level = openings_level(sim, i);
+    want(wanted, i, level, level);
+  }
+}
+
 static void apply_criteria(struct simulation *sim, struct wanted *wanted) {
   const struct params *params = sim->params;
+  want_openings(sim, wanted);
   for (int k = 0; k < params->ncriteria; k++) {
     const struct criterion *criterion = &params->criterion[k];
     switch (criterion->type) {

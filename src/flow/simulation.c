@@ -11,29 +11,11 @@
 #include "talus/hierarchy.h"
 #include "talus/level_raster.h"
 #include "talus/memory.h"
+#include "talus/openings.h"
 #include "talus/shapes.h"
 #include "talus/skin.h"
 #include "talus/step.h"
 #include "talus/vof.h"
-
-/* Patches of the mesh: one per side, then one per further boundary of the
- * case and axis it lies across (slip needs to know its normal). */
-enum { SIDES = 6 };
-static int patch_of(int boundary, int axis) {
-  return SIDES + (boundary - SIDES) * DIM + axis;
-}
-
-static int patch_at(void *context, int side, const double x[3]) {
-  const struct params *params = context;
-  int boundary =
-      params->boundary_select
-          ? params->boundary_select(params->boundary_context, side, x)
-          : side;
-  CHECK(
-      boundary == side || (boundary >= SIDES && boundary < params->nboundaries),
-      "boundary %d chosen on side %d", boundary, side);
-  return boundary < SIDES ? side : patch_of(boundary, side / 2);
-}
 
 void simulation_layout(const struct params *params,
                        struct forest_layout *layout) {
@@ -44,7 +26,7 @@ void simulation_layout(const struct params *params,
     layout->trees[d] = params->trees[d];
     layout->periodic[d] = params->boundary[2 * d].type == BOUNDARY_PERIODIC;
   }
-  layout->patch = patch_at;
+  layout->patch = openings_patch;
   layout->patch_context = (void *)params;
 }
 
@@ -80,9 +62,9 @@ static void set_patch(struct simulation *sim, int patch, int axis,
     sim->p->bc[patch] = (struct bc){BC_DIRICHLET, boundary->pressure, 0};
   }
   if (boundary->type == BOUNDARY_INFLOW) {
-    sim->c->bc[patch] = (struct bc){BC_DIRICHLET, boundary->fraction, 0};
+    sim->c->bc[patch] = (struct bc){BC_CARRIED, boundary->fraction, 0};
     for (int k = 0; k < sim->params->ntracers; k++) {
-      sim->tracer[k]->bc[patch] = (struct bc){BC_DIRICHLET, 0, 0};
+      sim->tracer[k]->bc[patch] = (struct bc){BC_CARRIED, 0, 0};
     }
   }
 }
@@ -92,32 +74,22 @@ static void set_boundaries(struct simulation *sim) {
   for (int side = 0; side < NFACE; side++) {
     set_patch(sim, side, side / 2, &params->boundary[side]);
   }
-  for (int b = SIDES; b < params->nboundaries; b++) {
+  for (int b = 6; b < params->nboundaries; b++) {
     for (int axis = 0; axis < DIM; axis++) {
-      set_patch(sim, patch_of(b, axis), axis, &params->boundary[b]);
+      set_patch(sim, openings_patch_number(b, axis), axis,
+                &params->boundary[b]);
     }
   }
 }
 
-/* Does some face of the box set the pressure? */
+/* Find out whether some face of the mesh sets the pressure. */
 static void find_openings(struct simulation *sim) {
-  const struct params *params = sim->params;
   double open = 0;
-  bool meant = false;
   for (int32_t f = 0; f < sim->mesh->nfaces; f++) {
     const int patch = sim->mesh->face_patch[f];
     if (patch >= 0 && sim->open[patch]) open = 1;
   }
   sim->pressure_set = mesh_max(sim->mesh, open) > 0;
-  for (int b = 0; b < params->nboundaries; b++) {
-    meant = meant || params->boundary[b].type == BOUNDARY_OUTFLOW;
-  }
-  if (meant && !sim->pressure_set && !params->pressure_level_given) {
-    USER_ERROR(
-        "no face of the box takes the outflow that the case names, so "
-        "nothing sets the pressure: let a side choose it, or give "
-        "boundary.pressure_level");
-  }
 }
 
 static struct field *add_cell(struct simulation *sim, const char *name,
@@ -234,6 +206,7 @@ void simulation_remesh(struct simulation *sim) {
   sim->hierarchy = hierarchy_new(sim->mesh);
   sim->clean = clean_new(sim->mesh);
   fields_reset(&sim->fields, sim->mesh);
+  find_openings(sim);
   sim->planes_hold = false;
 }
 
@@ -368,6 +341,7 @@ struct simulation *simulation_new(const struct params *params) {
   } else {
     fill_state(sim, FINENESS_FINAL);
   }
+  openings_check(sim);
   for (int k = 0; k < params->ntracers; k++) {
     fill_shape(sim, FINENESS_FINAL, &params->tracer[k].shape, sim->tracer[k]);
   }

@@ -55,6 +55,7 @@ struct builder {
   int32_t ngroups, group_capacity;
   struct boundary_node *boundary;
   int32_t nboundary, boundary_capacity;
+  int32_t shared_capacity;      /* of mesh->shared */
   struct plan_request *request; /* scratch */
   int64_t nrequests, request_capacity;
 };

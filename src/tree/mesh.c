@@ -93,7 +93,8 @@ void mesh_destroy(struct mesh *mesh) {
                    mesh->virtual_weight,
                    mesh->boundary_source,
                    mesh->boundary_patch,
-                   mesh->boundary_h};
+                   mesh->boundary_h,
+                   mesh->shared};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   mem_free(mesh);
 }

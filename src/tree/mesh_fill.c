@@ -52,6 +52,41 @@ static void fill_boundaries(const struct mesh *mesh, double *v,
   }
 }
 
+/* Value of a condition that is the mean over patches; that of `patch`, whose
+ * type of condition holds, if it has none. */
+static double shared_value(const struct patch_shares *shares,
+                           const struct bc *bc, int patch) {
+  const enum bc_type type = bc[patch].type;
+  double sum = 0;
+  if (shares->n == 0 || type == BC_NEUMANN) return bc[patch].value;
+  for (int k = 0; k < shares->n; k++) {
+    const struct bc *of = &bc[shares->patch[k]];
+    if (of->type == BC_NEUMANN) continue;
+    sum += (type == BC_CARRIED ? shares->flux : shares->part)[k] * of->value;
+  }
+  return sum;
+}
+
+/* Set the nodes beyond faces that patches share. */
+static void fill_shared(const struct mesh *mesh, double *v,
+                        const struct bc *bc) {
+  for (int32_t i = 0; i < mesh->nshared; i++) {
+    const struct shared_node *shared = &mesh->shared[i];
+    const int32_t k = shared->node;
+    double value = v[mesh->boundary_source[k]];
+    for (int d = 0; d < DIM; d++) {
+      const int patch = mesh->boundary_patch[k][d];
+      if (patch < 0) continue;
+      struct bc one = bc[patch];
+      double a, b;
+      one.value = shared_value(&shared->across[d], bc, patch);
+      bc_ghost(&one, mesh->boundary_h[k], &a, &b);
+      value = a * value + b;
+    }
+    v[mesh->begin_boundary + k] = value;
+  }
+}
+
 void mesh_fill_ghosts(const struct mesh *mesh, int n, double *const v[]) {
   plan_run(&mesh->exchange->ghost, n, v, 1, false);
 }
@@ -71,6 +106,7 @@ void mesh_fill(const struct mesh *mesh, int n, double *const v[],
   plan_run(&mesh->exchange->virtual_node, n, group, NCHILD, false);
   for (int k = 0; k < n; k++) {
     fill_boundaries(mesh, v[k], bc[k], homogeneous);
+    if (!homogeneous) fill_shared(mesh, v[k], bc[k]);
   }
 }
 

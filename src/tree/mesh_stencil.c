@@ -75,6 +75,19 @@ static int32_t node_at(struct builder *b, uint64_t key, int level) {
   return average_get(b, key, level);
 }
 
+/* Note the patches that share the face of boundary node k along axis d. */
+static void add_shares(struct builder *b, int32_t k, int d,
+                       const struct patch_shares *shares) {
+  struct mesh *mesh = b->mesh;
+  if (shares->n == 0) return;
+  if (mesh->nshared == 0 || mesh->shared[mesh->nshared - 1].node != k) {
+    const int32_t i = list_grow((void **)&mesh->shared, &mesh->nshared,
+                                &b->shared_capacity, sizeof *mesh->shared);
+    mesh->shared[i] = (struct shared_node){.node = k};
+  }
+  mesh->shared[mesh->nshared - 1].across[d] = *shares;
+}
+
 /* Mirror image of the node at integer place x across the sides in o. */
 static int32_t boundary_get(struct builder *b, int32_t source,
                             const int64_t x[DIM], const int outside[DIM],
@@ -100,11 +113,13 @@ static int32_t boundary_get(struct builder *b, int32_t source,
     }
     face[d] += 0.5 * h * outside[d];
     int side = 2 * d + (outside[d] > 0);
-    int patch = b->layout->patch
-                    ? b->layout->patch(b->layout->patch_context, side, face)
-                    : side;
+    struct patch_shares shares = {0};
+    int patch = b->layout->patch ? b->layout->patch(b->layout->patch_context,
+                                                    side, face, h, &shares)
+                                 : side;
     CHECK(patch >= 0 && patch < MESH_MAX_PATCHES, "patch %d", patch);
     b->boundary[k].patch[d] = (int8_t)patch;
+    add_shares(b, k, d, &shares);
   }
   return node_name(KIND_BOUNDARY, k);
 }
