@@ -50,7 +50,8 @@ static const char CHECK_HELP[] =
     "\n"
     "Reads the case as `talus run` would, says what is wrong with it, and\n"
     "prints every parameter in use: key = value, unit, meaning, and whether\n"
-    "it is a default or from the command line. Nothing is computed or\n"
+    "it is a default or from the command line; then how much of a side each\n"
+    "patch of boundary.patches covers. Nothing is computed or\n"
     "written. `talus help case` lists the keys of a case.\n";
 
 static const char INFO_HELP[] =

@@ -92,13 +92,20 @@ static void print_boundaries(FILE *f) {
     print_options(f, kind->name, kind->help, kind->options);
   for (int i = 0; (option = keys_boundary_option(i)) != NULL; i++)
     print_key(f, 4, option);
-  fprintf(f,
-          "  A side may be a function of position that returns \"no_slip\", "
-          "\"slip\" or a name\n"
-          "  of boundary.patches, as an outlet in a floor:\n"
-          "    bottom = function(x, y) return x < 1 and \"outlet\" or "
-          "\"no_slip\" end,\n"
-          "    patches = { outlet = { \"outflow\", pressure = 0 } },\n");
+  fprintf(
+      f,
+      "  A side may be a function of position that returns \"no_slip\", "
+      "\"slip\" or a name\n"
+      "  of boundary.patches, as an outlet in a floor:\n"
+      "    bottom = function(x, y) return x < 1 and \"outlet\" or "
+      "\"no_slip\" end,\n"
+      "    patches = { outlet = { \"outflow\", pressure = 0 } },\n"
+      "  The grid is fine where patches meet and at narrow inflows and "
+      "outflows\n"
+      "  (adapt.opening_level). What flows in is that of the patch as it is; "
+      "an outlet\n"
+      "  has the faces with their centre in it. `talus check` says what each "
+      "covers.\n");
 }
 
 static void print_criteria(FILE *f) {
