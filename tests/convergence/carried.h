@@ -104,8 +104,8 @@ static inline void carried_step(struct carried *c) {
   }
   transport_step(&bench, &t, (int)(sim->step % DIM), dt);
   const double volume = integral(sim->mesh, sim->c->v);
-  c->excess = fmax(c->excess, transport_excess(&bench, &t));
-  c->drift = fmax(c->drift, fabs(volume / c->volume - 1));
+  c->excess = larger(c->excess, transport_excess(&bench, &t));
+  c->drift = larger(c->drift, fabs(volume / c->volume - 1));
   sim->time += dt, sim->step++;
   carried_adapt(c, dt);
 }
@@ -155,7 +155,7 @@ static inline void carried_report(struct report *report, const char *grid,
   double worst = 0, drift;
   for (int k = 0; k < n; k++) {
     error[k] = carried_run(flow, first + k, adapted, &drift) / unit;
-    worst = fmax(worst, drift);
+    worst = larger(worst, drift);
   }
   report_errors(report, grid, "mean |c - c0|", first, n, error, bars, 0);
   report_at_most(report, grid, "drift of volume", first + n - 1, worst, 1e-12);

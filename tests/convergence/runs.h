@@ -61,7 +61,7 @@ static inline double run_rate(const struct simulation *sim) {
   double most = 0;
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-      most = fmax(most, fabs(sim->u[d]->v[i] - sim->u_old[d]->v[i]));
+      most = larger(most, fabs(sim->u[d]->v[i] - sim->u_old[d]->v[i]));
     }
   }
   return mesh_max(sim->mesh, most) / sim->dt;
@@ -89,7 +89,7 @@ static inline struct norms norms_of(const struct mesh *mesh,
     volume += mesh_volume(mesh, i);
     sum[0] += mesh_volume(mesh, i) * error[i] * error[i];
     sum[1] += mesh_volume(mesh, i) * fabs(error[i]);
-    if (!(fabs(error[i]) <= most)) most = fabs(error[i]); /* NaN stays */
+    most = larger(most, fabs(error[i]));
   }
   volume = mesh_sum(mesh, volume);
   return (struct norms){sqrt(mesh_sum(mesh, sum[0]) / volume),

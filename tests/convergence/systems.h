@@ -104,7 +104,7 @@ static inline void remove_mean(const struct mesh *mesh, double *v) {
 
 static inline double largest_size(const struct mesh *mesh, const double *v) {
   double most = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) most = fmax(most, fabs(v[i]));
+  for (int32_t i = 0; i < mesh->nleaves; i++) most = larger(most, fabs(v[i]));
   return mesh_max(mesh, most);
 }
 

@@ -108,7 +108,7 @@ static double strip_excess(enum limiter limiter) {
     good = step_advance(sim, 1 - sim->time) == EXIT_DONE;
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
       const double v = sim->u[1]->v[i];
-      most = fmax(most, fmax(-v, v - 1));
+      most = larger(most, larger(-v, v - 1));
     }
   }
   simulation_destroy(sim);
@@ -160,7 +160,7 @@ static double square_excess(enum limiter limiter, double slope) {
     advection_momentum(b->mesh, dt, v[U], v[G], u_f, NULL, &work, v[OUT]);
     memcpy(v[U][0], v[OUT][0], (size_t)b->mesh->nleaves * sizeof(double));
     for (int32_t i = 0; i < b->mesh->nleaves; i++) {
-      most = fmax(most, fmax(-v[U][0][i], v[U][0][i] - 1));
+      most = larger(most, larger(-v[U][0][i], v[U][0][i] - 1));
     }
   }
   bench_destroy(b);

@@ -37,7 +37,7 @@ static double viscosity_error(const struct simulation *sim) {
     if (depth < 1e-9) continue; /* the surface: both are 0 */
     const double exact =
         sin(kFlowing) * depth / bagnold_rate(kFlowing, 1 - depth);
-    most = fmax(most, fabs(sim->eta_f->v[f] - exact) / exact);
+    most = larger(most, fabs(sim->eta_f->v[f] - exact) / exact);
   }
   return most;
 }

@@ -67,7 +67,7 @@ static void couette_errors(double part, double density_soft, double error[2]) {
     const double y = sim->mesh->x[i][1];
     const bool cut = fabs(y - interface) < 0.5 * sim->mesh->h[i];
     const double off = fabs(sim->u[0]->v[i] - couette(interface, y));
-    error[cut] = fmax(error[cut], fmax(off, fabs(sim->u[1]->v[i])));
+    error[cut] = larger(error[cut], larger(off, fabs(sim->u[1]->v[i])));
   }
   simulation_destroy(sim);
 }
@@ -182,7 +182,7 @@ static struct norms stripe_errors(enum grid grid, int level, double middle) {
     remove_mean(b->mesh, error->v);
     const struct norms part = norms_of(b->mesh, error->v);
     norms.l2 = hypot(norms.l2, part.l2);
-    norms.most = fmax(norms.most, part.most);
+    norms.most = larger(norms.most, part.most);
   }
   if (!good) norms.l2 = norms.most = NAN;
   bench_destroy(b);

@@ -108,7 +108,7 @@ static void run_ratio(struct report *report, const char *grid, double ratio,
   while (good && now.centre[0] - from.centre[0] < kTravel && sim->step < 2000) {
     good = step_advance(sim, 1) == EXIT_DONE;
     follow(sim, &now);
-    fastest = fmax(fastest, largest(sim, sim->u));
+    fastest = larger(fastest, largest(sim, sim->u));
   }
   const double mean = (now.centre[0] - from.centre[0]) / (now.time - from.time);
   report_value(report, grid, "speed at step 2 / U", 7, speed);

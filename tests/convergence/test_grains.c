@@ -102,15 +102,16 @@ static void report_glass_beads(struct report *report) {
                  fabs(high[1] * length / 0.055 - 1), 0.1);
   report_friction_limits(report, run[1]);
   report_at_most(report, "glass beads", "eta_S: change of run-out", 8,
-                 fmax(run[1] - run[0], run[2] - run[1]) / run[1], -0.05);
+                 larger(run[1] - run[0], run[2] - run[1]) / run[1], -0.05);
   report_at_least(report, "glass beads", "eta_S: change of height", 8,
-                  fmin(high[1] - high[0], high[2] - high[1]) / high[1], 0.05);
+                  smaller(high[1] - high[0], high[2] - high[1]) / high[1],
+                  0.05);
   sweep("lee_huang_column", "level=8", stop, length, "e_eff", 3, e_eff, run,
         high);
   report_at_least(report, "glass beads", "e_eff: change of run-out", 8,
-                  fmin(run[1] - run[0], run[2] - run[1]) / run[1], 0);
+                  smaller(run[1] - run[0], run[2] - run[1]) / run[1], 0);
   report_at_most(report, "glass beads", "e_eff: change of height", 8,
-                 fmax(high[1] - high[0], high[2] - high[1]) / high[1], 0);
+                 larger(high[1] - high[0], high[2] - high[1]) / high[1], 0);
 }
 
 static void run(struct report *report) {

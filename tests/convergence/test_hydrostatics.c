@@ -47,7 +47,7 @@ static void rest(int level, bool adapted, struct bed *bed, double most[2]) {
   for (int k = 0; k < STEPS && good; k++) {
     good = step_advance(sim, kStep) == EXIT_DONE;
     double *half = &most[2 * k / STEPS];
-    *half = fmax(*half, largest(sim, sim->u) / sqrt(kDepth));
+    *half = larger(*half, largest(sim, sim->u) / sqrt(kDepth));
   }
   simulation_destroy(sim);
   if (!good) most[0] = most[1] = NAN;
@@ -62,7 +62,7 @@ static void run_bed(struct report *report, const char *grid, bool adapted,
   double most[N][2], error[N];
   for (int k = 0; k < N; k++) {
     rest(FIRST + k, adapted, &bed, most[k]);
-    error[k] = fmax(most[k][0], most[k][1]);
+    error[k] = larger(most[k][0], most[k][1]);
   }
   report_errors(report, grid, "max |u|", FIRST, N, error, bars,
                 error[N - 1] > kRoundOff ? 1 : 0);

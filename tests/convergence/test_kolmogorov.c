@@ -130,7 +130,7 @@ static void solve(enum grid grid, int level, double value[3]) {
     norms[d] = norms_of(mesh, error);
   }
   value[0] = good ? hypot(norms[0].l2, norms[1].l2) : NAN;
-  value[1] = good ? fmax(norms[0].most, norms[1].most) : NAN;
+  value[1] = good ? larger(norms[0].most, norms[1].most) : NAN;
   value[2] = compression(&s);
   flow_end(&s);
 }

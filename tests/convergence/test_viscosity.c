@@ -109,7 +109,7 @@ static struct norms solve(const void *context, enum grid grid, int level) {
     }
     const struct norms part = norms_of(s.mesh, error);
     norms.l2 = hypot(norms.l2, part.l2);
-    norms.most = fmax(norms.most, part.most);
+    norms.most = larger(norms.most, part.most);
   }
   if (stats.status != SOLVE_CONVERGED) norms.l2 = norms.most = NAN;
   system_end(&s);

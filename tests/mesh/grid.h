@@ -12,6 +12,15 @@
 #include "talus/memory.h"
 #include "talus/mesh.h"
 
+/* Larger and smaller of two measured values, NaN if one of them is: fmax and
+ * fmin would pass over it, and a bar could not fail. */
+static inline double larger(double a, double b) {
+  return a > b || a != a ? a : b;
+}
+static inline double smaller(double a, double b) {
+  return a < b || a != a ? a : b;
+}
+
 /* Refine leaves whose centre lies within `radius` of `centre`, up to
  * `level`, and give every rank its share. */
 static inline void grid_refine(struct forest *forest, const double *centre,

@@ -126,7 +126,7 @@ static inline double largest(const struct simulation *sim,
   double most = 0;
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-      most = fmax(most, fabs(v[d]->v[i]));
+      most = larger(most, fabs(v[d]->v[i]));
     }
   }
   return mesh_max(sim->mesh, most);

@@ -45,7 +45,7 @@ static inline double transport_excess(const struct bench *b,
                                       const struct transport *t) {
   double most = 0;
   for (int32_t i = 0; i < b->mesh->nleaves; i++) {
-    most = fmax(most, fmax(-t->c->v[i], t->c->v[i] - 1));
+    most = larger(most, larger(-t->c->v[i], t->c->v[i] - 1));
   }
   return mesh_max(b->mesh, most);
 }
