@@ -7,12 +7,15 @@
  * surface some of them end in gas, whose velocity does not continue that of
  * the grains. With the viscosity of the grains, which the face has, such a line
  * makes a stress that neither phase has, over one cell, whatever its size: at
- * the ends of the surface it leaves a force of eta du / 4. So at a face between
- * two heavy nodes, those with more mass of grains than of gas, whose velocity
- * is that of the grains, the lines between heavy nodes alone count:
- *   h du/dx_t = mean over these lines of their differences,
- * exact for grains that move linearly, whatever the gas does. Where there is
- * no such line, in a film one cell thick, the shear stress is 0.
+ * the ends of the surface it leaves a force of eta du / 4. So the lines have
+ * weights: with m = c / (c + (1 - c) rho_gas/rho_grains), the part of a node's
+ * mass that is grains, and so of its velocity,
+ *   h du/dx_t = sum_k w_k du_k / sum_k w_k,   w_k = 1 - M (1 - m_k),
+ * m_k at the far end of line k, M the smaller m of the nodes of the face. In
+ * grains (M = 1) lines into gas (m_k = 0) do not count: exact for grains that
+ * move linearly, whatever the gas does. In gas (M = 0) all count. Where less
+ * than one whole line is left, in a film one cell thick, the shear stress is
+ * that times sum_k w_k, at last 0. All of this is continuous in c.
  *
  * A dense square that moves through gas 1e5 times lighter (dense_square of
  * tests/convergence) changes its shape by 1.7e-3 of its area, with lines into
@@ -27,24 +30,26 @@
 
 struct skin_face {
   int32_t face;
-  int8_t axis;        /* of the face */
-  uint8_t lines[DIM]; /* along each axis, in the order of skin_difference */
+  int8_t axis;           /* of the face */
+  double weight[DIM][4]; /* along each axis, of the lines of nodes 0, 0, 1, 1
+                           down and up; their sum is 1 */
+  double part[DIM];      /* of the shear stress that is left, 1: all */
 };
 
 struct skin {
   int32_t n, room;
-  struct skin_face *face; /* [n], those with lines to leave out; owned */
+  struct skin_face *face; /* [n], those with weights; owned */
 };
 
 /* Owned by the caller. NULL is a skin without faces. */
 struct skin *skin_new(void);
 void skin_destroy(struct skin *skin);
 
-/* Find the faces; c [ncells] filled, heavy where c > least. */
-void skin_find(const struct mesh *mesh, const double *c, double least,
+/* Find the faces. c [ncells] filled; ratio: of the densities, gas / grains. */
+void skin_find(const struct mesh *mesh, const double *c, double ratio,
                struct skin *skin);
 
-/* h du/dx_t at a face, t not its axis; 0 without a line. u filled. */
+/* h du/dx_t at a face, t not its axis. u filled. */
 double skin_difference(const struct mesh *mesh, const struct skin_face *face,
                        int t, const double *u);
 

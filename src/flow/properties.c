@@ -236,7 +236,8 @@ static void skin_shear_squared(const struct mesh *mesh, const struct skin *skin,
     face_gradient(mesh, face->axis, f, u, grad);
     for (int t = 0; t < DIM; t++) {
       for (int e = 0; e < DIM && t != face->axis; e++) {
-        grad[e][t] = skin_difference(mesh, face, t, u[e]) / mesh->face_h[f];
+        grad[e][t] = face->part[t] * skin_difference(mesh, face, t, u[e]) /
+                     mesh->face_h[f];
       }
     }
     squared_f[f] = shear_squared(grad);

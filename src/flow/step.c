@@ -89,8 +89,7 @@ static void update_density(struct simulation *sim) {
   field_fill(mesh, sim->c);
   fractions_update_planes(sim);
   if (!sim->params->single_phase) {
-    const double least = density[1] / (density[0] + density[1]);
-    skin_find(mesh, sim->c->v, least, sim->skin);
+    skin_find(mesh, sim->c->v, density[1] / density[0], sim->skin);
   }
   properties_density(mesh, density, sim->c->v, sim->closed, sim->rho->v,
                      sim->alpha_f->v);

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/skin.h"
 
-#include "talus/memory.h"
+#include <stdbool.h>
 
-enum { ALL = 15 }; /* four lines */
+#include "talus/memory.h"
+#include "talus/minmax.h"
+
+/* Weights so close to 1 count as that. */
+#define WHOLE 1e-9
 
 struct skin *skin_new(void) {
   return MEM_NEW(struct skin, 1);
@@ -23,19 +27,32 @@ static inline void face_places(const struct mesh *mesh, int d, int32_t f,
   place[1] = place[0] + stencil_step(d);
 }
 
-/* Bit k of four: the line from node k / 2 of face f of axis d, downwards along
- * t if k is even, ends in a heavy node. */
-static uint8_t heavy_lines(const struct mesh *mesh, int d, int32_t f, int t,
-                           const double *c, double least) {
+/* Part of the mass of a node that is grains. */
+static inline double grain_part(double c, double ratio) {
+  c = min2(max2(c, 0), 1);
+  return c / (c + (1 - c) * ratio);
+}
+
+/* Weights of the lines along t of face f of axis d, `grains` being M; false if
+ * all are whole. */
+static bool weigh_lines(const struct mesh *mesh, int d, int32_t f, int t,
+                        const double *c, double ratio, double grains,
+                        struct skin_face *face) {
   const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
-  uint8_t lines = 0;
+  double weight[4], sum = 0, least = 1;
   int place[2];
   face_places(mesh, d, f, place);
   for (int k = 0; k < 4; k++) {
     const int end = place[k / 2] + (k & 1 ? 1 : -1) * stencil_step(t);
-    if (c[stencil[end]] > least) lines |= (uint8_t)(1 << k);
+    weight[k] = 1 - grains * (1 - grain_part(c[stencil[end]], ratio));
+    sum += weight[k];
+    least = min2(least, weight[k]);
   }
-  return lines;
+  for (int k = 0; k < 4; k++) {
+    face->weight[t][k] = sum > 0 ? weight[k] / sum : 0;
+  }
+  face->part[t] = min2(sum, 1);
+  return least < 1 - WHOLE;
 }
 
 static void add_face(struct skin *skin, const struct skin_face *face) {
@@ -46,21 +63,22 @@ static void add_face(struct skin *skin, const struct skin_face *face) {
   skin->face[skin->n++] = *face;
 }
 
-void skin_find(const struct mesh *mesh, const double *c, double least,
+void skin_find(const struct mesh *mesh, const double *c, double ratio,
                struct skin *skin) {
   skin->n = 0;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
-      if (!(c[node[0]] > least && c[node[1]] > least)) continue;
-      struct skin_face face = {f, (int8_t)d, {0}};
-      bool complete = true;
+      const double grains = grain_part(min2(c[node[0]], c[node[1]]), ratio);
+      if (grains < WHOLE) continue;
+      struct skin_face face = {.face = f, .axis = (int8_t)d};
+      bool found = false;
       for (int t = 0; t < DIM; t++) {
-        if (t == d) continue;
-        face.lines[t] = heavy_lines(mesh, d, f, t, c, least);
-        complete = complete && face.lines[t] == ALL;
+        found =
+            (t != d && weigh_lines(mesh, d, f, t, c, ratio, grains, &face)) ||
+            found;
       }
-      if (!complete) add_face(skin, &face);
+      if (found) add_face(skin, &face);
     }
   }
 }
@@ -69,14 +87,13 @@ double skin_difference(const struct mesh *mesh, const struct skin_face *face,
                        int t, const double *u) {
   const int32_t *stencil = mesh->stencil[mesh->face_owner[face->face]];
   double sum = 0;
-  int n = 0, place[2];
+  int place[2];
   face_places(mesh, face->axis, face->face, place);
   for (int k = 0; k < 4; k++) {
-    if (!(face->lines[t] >> k & 1)) continue;
     const int sign = k & 1 ? 1 : -1;
     const int end = place[k / 2] + sign * stencil_step(t);
-    sum += sign * (u[stencil[end]] - u[stencil[place[k / 2]]]);
-    n++;
+    sum += face->weight[t][k] * sign *
+           (u[stencil[end]] - u[stencil[place[k / 2]]]);
   }
-  return n > 0 ? sum / n : 0;
+  return sum;
 }

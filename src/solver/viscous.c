@@ -55,7 +55,7 @@ static void skin_stress(const struct mesh *mesh, const double *eta_f,
       if (e == face->axis) continue;
       const double du = u[e][node[1]] - u[e][node[0]];
       const double dv = skin_difference(mesh, face, e, u[face->axis]);
-      tau[e][f] = face->lines[e] ? eta * (du + dv) : 0;
+      tau[e][f] = face->part[e] * eta * (du + dv);
     }
   }
 }

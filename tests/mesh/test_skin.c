@@ -54,7 +54,7 @@ static struct block *block_new(double height, double a[DIM][DIM]) {
   }
   mesh_fill(b->mesh, 1, &b->c, bc, false);
   mesh_fill(b->mesh, DIM, b->u, bc, false);
-  skin_find(b->mesh, b->c, 0.01, b->skin);
+  skin_find(b->mesh, b->c, 1e-3, b->skin);
   return b;
 }
 
