@@ -209,9 +209,17 @@ double clean_divergence(const struct mesh *mesh, const double *u_f) {
   return mesh_max(mesh, most);
 }
 
+/* Net outflow of leaf i beyond what `source`, 1/s, asks for; NULL: none. */
+static double net_excess(const struct mesh *mesh, const double *source,
+                         const double *u_f, int32_t i) {
+  return net_outflow(mesh, u_f, i) -
+         (source ? source[i] * mesh_volume(mesh, i) : 0);
+}
+
 /* Let the total excess of the leaves out through the open boundary faces. */
 static void balance_boundaries(struct clean *clean, const struct mesh *mesh,
-                               const bool *open, double excess, double *u_f) {
+                               const bool *open, const double *source,
+                               double excess, double *u_f) {
   double sum[2] = {excess, 0}; /* net outflow, open area */
   for (int32_t k = 0; k < clean->nboundary; k++) {
     const int32_t f = clean->boundary[k];
@@ -224,7 +232,7 @@ static void balance_boundaries(struct clean *clean, const struct mesh *mesh,
     const int32_t f = clean->boundary[k], i = mesh->face_owner[f];
     if (!open[mesh->face_patch[f]]) continue;
     u_f[f] -= (mesh->face_leaf[f][1] < 0 ? 1 : -1) * sum[0] / sum[1];
-    clean->net[i] = net_outflow(mesh, u_f, i);
+    clean->net[i] = net_excess(mesh, source, u_f, i);
   }
 }
 
@@ -348,14 +356,19 @@ static void treat_node(struct clean *clean, const struct mesh *mesh, int32_t k,
 
 void clean_face_velocity(struct clean *clean, const struct mesh *mesh,
                          const bool *open, double *u_f) {
+  clean_to_source(clean, mesh, open, NULL, u_f);
+}
+
+void clean_to_source(struct clean *clean, const struct mesh *mesh,
+                     const bool *open, const double *source, double *u_f) {
   CHECK(clean->revision == mesh->revision, "tree of another mesh");
   mesh_fill_faces(mesh, 1, &u_f);
   double excess = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    clean->net[i] = net_outflow(mesh, u_f, i);
+    clean->net[i] = net_excess(mesh, source, u_f, i);
     excess += clean->net[i];
   }
-  balance_boundaries(clean, mesh, open, excess, u_f);
+  balance_boundaries(clean, mesh, open, source, excess, u_f);
   gather_net(clean, mesh);
   balance_trees(clean);
   for (int32_t t = 0; t < clean->ntrees; t++) {

@@ -39,6 +39,41 @@ START_TEST(divergence_vanishes_to_round_off) {
 }
 END_TEST
 
+/* A source of size 1 in the leaves of one half, taken out in the other, becomes
+ * the divergence to round-off over h. */
+START_TEST(divergence_becomes_the_source) {
+  struct forest *forest = grid_new(MPI_COMM_WORLD, 1 + _i, false, 2, 5);
+  struct mesh *mesh = mesh_new(forest);
+  struct clean *clean = clean_new(mesh);
+  double *u_f = MEM_NEW(double, mesh->nfaces_all), most = 0;
+  double *source = MEM_NEW(double, mesh->nleaves), sum[2] = {0};
+  const bool open[MESH_MAX_PATCHES] = {false};
+  for (int k = 0; k < 2; k++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const int half = mesh->x[i][0] > 0.3;
+      if (k == 0) sum[half] += mesh_volume(mesh, i);
+      if (k == 1) source[i] = (half ? 1 : -1) / sum[half];
+    }
+    for (int j = 0; j < 2 && k == 0; j++) sum[j] = mesh_sum(mesh, sum[j]);
+  }
+  clean_to_source(clean, mesh, open, source, u_f);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double net = 0;
+    for (int f = 0; f < NFACE; f++) {
+      net += (f & 1 ? 1 : -1) * u_f[mesh->cell_face[i][f]];
+    }
+    most = fmax(most, fabs(net - source[i] * mesh->h[i]));
+  }
+  most = mesh_max(mesh, most);
+  mem_free(source);
+  mem_free(u_f);
+  clean_destroy(clean);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+  ck_assert_double_le(most, 1e-13);
+}
+END_TEST
+
 START_TEST(a_solenoidal_field_is_left_alone) {
   struct forest *forest = grid_new(MPI_COMM_WORLD, 1, true, 2, 5);
   struct mesh *mesh = mesh_new(forest);
@@ -70,6 +105,7 @@ Suite *clean_suite(void) {
   Suite *suite = suite_create("clean");
   TCase *tc = tcase_create("clean");
   tcase_add_loop_test(tc, divergence_vanishes_to_round_off, 0, 8);
+  tcase_add_loop_test(tc, divergence_becomes_the_source, 0, 2);
   tcase_add_test(tc, a_solenoidal_field_is_left_alone);
   suite_add_tcase(suite, tc);
   return suite;
