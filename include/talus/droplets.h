@@ -24,4 +24,10 @@ struct droplets {
 void droplets_find(const struct mesh *mesh, const double *c, bool *heap,
                    struct droplets *droplets);
 
+/* Number the sets of leaves with v > threshold that share faces: set [nleaves]
+ * becomes a number in [0, n), the same on all ranks, or -1. Returns n; not
+ * every number need be in use. Collective. */
+int droplets_number(const struct mesh *mesh, const double *v, double threshold,
+                    int32_t *set);
+
 #endif

@@ -40,10 +40,11 @@ static void join(int32_t *parent, int32_t i, int32_t j) {
 
 /* parent [nleaves]: an earlier leaf of the piece, the first one its own; -1
  * where there are no grains. */
-static int32_t *join_leaves(const struct mesh *mesh, const double *c) {
+static int32_t *join_leaves(const struct mesh *mesh, const double *c,
+                            double threshold) {
   int32_t *parent = MEM_NEW(int32_t, (size_t)mesh->nleaves);
   for (int32_t i = 0; i < mesh->nleaves; i++)
-    parent[i] = c[i] > DROPLETS_THRESHOLD ? i : -1;
+    parent[i] = c[i] > threshold ? i : -1;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     int32_t i = mesh->face_leaf[f][0], j = mesh->face_leaf[f][1];
     if (i < 0 || j < 0 || i >= mesh->nleaves || j >= mesh->nleaves) continue;
@@ -192,25 +193,55 @@ static int32_t find_heap(int n, const struct piece *pieces, const int32_t *root,
   return heap;
 }
 
+/* Sets of leaves over all ranks. */
+struct sets {
+  int npieces;
+  struct piece *pieces; /* [npieces] of all ranks */
+  int32_t *root;        /* [npieces] the piece that stands for the set */
+  int32_t *number;      /* [nleaves] piece of a leaf, -1: none */
+};
+
+static void join_sets(const struct mesh *mesh, const double *c,
+                      double threshold, struct sets *sets) {
+  struct link *links;
+  int32_t *number = join_leaves(mesh, c, threshold);
+  int nmine = number_pieces(mesh, c, number, &sets->pieces);
+  double label = nmine > 0 ? sets->pieces[0].label : 0;
+  int nlinks = list_links(mesh, number, sets->pieces, &links);
+  sets->npieces = gather_pairs(mesh, nmine, (void **)&sets->pieces);
+  nlinks = gather_pairs(mesh, nlinks, (void **)&links);
+  sets->root = join_pieces(sets->npieces, sets->pieces, nlinks, links);
+  /* ours stand one after the other among those of all ranks */
+  const int32_t first =
+      nmine > 0 ? find_piece(sets->npieces, sets->pieces, label) : 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    if (number[i] >= 0) number[i] += first;
+  sets->number = number;
+  mem_free(links);
+}
+
+static void free_sets(struct sets *sets) {
+  mem_free(sets->root);
+  mem_free(sets->pieces);
+  mem_free(sets->number);
+}
+
+int droplets_number(const struct mesh *mesh, const double *v, double threshold,
+                    int32_t *set) {
+  struct sets sets;
+  join_sets(mesh, v, threshold, &sets);
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    set[i] = sets.number[i] < 0 ? -1 : sets.root[sets.number[i]];
+  free_sets(&sets);
+  return sets.npieces;
+}
+
 void droplets_find(const struct mesh *mesh, const double *c, bool *heap,
                    struct droplets *droplets) {
-  int32_t *number = join_leaves(mesh, c);
-  struct piece *pieces;
-  struct link *links;
-  int nmine = number_pieces(mesh, c, number, &pieces);
-  double label = nmine > 0 ? pieces[0].label : 0;
-  int nlinks = list_links(mesh, number, pieces, &links);
-  int npieces = gather_pairs(mesh, nmine, (void **)&pieces);
-  nlinks = gather_pairs(mesh, nlinks, (void **)&links);
-  int32_t *root = join_pieces(npieces, pieces, nlinks, links);
-  int32_t largest = find_heap(npieces, pieces, root, droplets);
-  /* ours stand one after the other among those of all ranks */
-  const int32_t *mine =
-      nmine > 0 ? root + find_piece(npieces, pieces, label) : root;
+  struct sets sets;
+  join_sets(mesh, c, DROPLETS_THRESHOLD, &sets);
+  int32_t largest = find_heap(sets.npieces, sets.pieces, sets.root, droplets);
   for (int32_t i = 0; i < mesh->nleaves; i++)
-    heap[i] = number[i] >= 0 && mine[number[i]] == largest;
-  mem_free(root);
-  mem_free(links);
-  mem_free(pieces);
-  mem_free(number);
+    heap[i] = sets.number[i] >= 0 && sets.root[sets.number[i]] == largest;
+  free_sets(&sets);
 }
