@@ -24,6 +24,7 @@
 #include "talus/output.h"
 #include "talus/parameter_changes.h"
 #include "talus/params.h"
+#include "talus/percolation.h"
 #include "talus/profile.h"
 #include "talus/progress.h"
 #include "talus/run_state.h"
@@ -374,6 +375,14 @@ static void say_timing(const struct run *run) {
                memory / fmax((double)run->most_cells, 1));
 }
 
+static void log_percolation(const struct simulation *sim) {
+  if (!(sim->percolation.volume > 0)) return;
+  log_info(
+      "gas that grains enclosed has left through them: %.6g m^%d so far, "
+      "at the pace of a permeability of %.3g m^2",
+      sim->percolation.volume, DIM, percolation_permeability(sim));
+}
+
 static void say_end(const struct run *run, const char *why) {
   const struct simulation *sim = run->sim;
   double wall = MPI_Wtime() - run->wall_begin;
@@ -385,6 +394,7 @@ static void say_end(const struct run *run, const char *why) {
            why, sim->step, sim->time, steps, wall,
            (double)steps / fmax(wall, 1e-9));
   log_info("%s", line);
+  log_percolation(sim);
   progress_say(run->progress, "%s", line);
   if (at_end(run)) {
     progress_say(run->progress, "results are in %s", run->options->directory);

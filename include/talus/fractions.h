@@ -21,6 +21,14 @@ struct simulation;
  * Collective. */
 void fractions_advance(struct simulation *sim, double dt, double rate);
 
+/* Carry c and tracers, and u near the interface, with a face velocity over dt,
+ * axis by axis, in an order that alternates from step to step. source
+ * [nleaves]: div u_f, 1/s, of gas that comes or goes, NULL where it is
+ * solenoidal; volumes are kept all the same. u, c and sim->band are filled.
+ * Collective. */
+void fractions_carry(struct simulation *sim, double dt, const double *u_f,
+                     const double *source);
+
 /* Make the planes of c those of what it is now. c is filled. Collective. */
 void fractions_update_planes(struct simulation *sim);
 

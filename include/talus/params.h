@@ -81,6 +81,13 @@ struct criterion {
   struct function function; /* FUNCTION: level as a real number */
 };
 
+/* Whether gas that grains enclose leaves through them (percolation.h). */
+enum permeability {
+  PERMEABLE_AUTO, /* if the viscosity of the grains depends on pressure */
+  PERMEABLE_NO,
+  PERMEABLE_YES
+};
+
 /* Limiter of the slopes that advection predicts face values with, from the
  * differences a, b to the two sides (0 where they differ in sign). */
 enum limiter {
@@ -117,9 +124,11 @@ struct params {
   double gravity[3];
   struct phase grains, gas;
   struct side_walls side_walls; /* that the grains slide on */
-  bool single_phase;            /* grains fill the box; no VOF, no gas */
-  struct function shape;        /* level set of the grains, positive inside */
-  struct function velocity[3];  /* initial velocity, absent: rest */
+  enum permeability permeability;
+  bool permeable;              /* what it comes to for these grains */
+  bool single_phase;           /* grains fill the box; no VOF, no gas */
+  struct function shape;       /* level set of the grains, positive inside */
+  struct function velocity[3]; /* initial velocity, absent: rest */
   struct tracer tracer[PARAMS_MAX_TRACERS]; /* passive VOF tracers */
   int ntracers;
   bool pressure_level_given; /* needed when no boundary sets the pressure */

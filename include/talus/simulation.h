@@ -13,6 +13,7 @@
 #include "talus/conditions.h"
 #include "talus/field.h"
 #include "talus/params.h"
+#include "talus/percolation.h"
 #include "talus/solve.h"
 
 enum { SIMULATION_MAX_KNOWN = 8 };
@@ -65,6 +66,10 @@ struct simulation {
                                  * without the friction of side walls */
   struct field *drag;           /* of side walls (side_walls.h); NULL: none */
 
+  /* Of gas that leaves through the grains (percolation.h); NULL: none may */
+  struct field *source;  /* of volume, 1/s: < 0 where gas is enclosed */
+  struct field *carrier; /* velocity on faces that carries c */
+
   /* Properties and scratch, remade every step */
   struct field *rho;                 /* leaves */
   struct field *eta;                 /* leaves, mean of the faces, for output */
@@ -97,6 +102,7 @@ struct simulation {
                               worst residual */
   double repeat_change; /* of |u_f|, m/s, in the last Picard repetition */
   struct energy energy;
+  struct percolation percolation;
   struct conditions conditions; /* of the checkpoint, on a restart */
   double scale;                 /* largest speed, of the viscous tolerance */
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */

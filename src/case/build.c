@@ -122,6 +122,15 @@ static void check_phases(struct case_file *file) {
                  "it, so give its density and rheology");
 }
 
+/* Friction between grains leaves pores; a liquid keeps its bubbles. */
+static void choose_permeable(struct params *params) {
+  const enum permeability choice = params->permeability;
+  params->permeable = !params->single_phase &&
+                      (choice == PERMEABLE_YES ||
+                       (choice == PERMEABLE_AUTO &&
+                        closure_depends_on_pressure(&params->grains.rheology)));
+}
+
 static void check_walls(struct case_file *file) {
   if (file->params.dimension == 3 && file->params.side_walls.mu > 0)
     read_fail_at(file, "grains.side_walls",
@@ -173,6 +182,7 @@ void build_params(struct case_file *file) {
   file->params.pressure_level_given = !lua_isnil(L, -1);
   lua_pop(L, 1);
   check_phases(file);
+  choose_permeable(&file->params);
   check_walls(file);
   check_grid(file);
   boundary_check(file);

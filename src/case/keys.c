@@ -19,6 +19,9 @@
 static const char *const LIMITERS[] = {"none", "minmod", "generalised_minmod",
                                        NULL};
 
+/* enum permeability */
+static const char *const PERMEABILITIES[] = {"auto", "no", "yes", NULL};
+
 /* Units are SI; any consistent set will do. clang-format would take three
  * times the lines. */
 /* clang-format off */
@@ -51,6 +54,10 @@ static const struct key KEYS[] = {
     {"grains.shape", KEY_SHAPE, OPTIONAL, .unit = "m", .offset = AT(shape),
      .help = "level set at t = 0, positive inside; left out with gas, they "
              "fill the box"},
+    {"grains.permeable", KEY_CHOICE, ANY, DEFAULT "auto", .unit = "",
+     .offset = AT(permeability), .choices = PERMEABILITIES,
+     .help = "does gas that they enclose leave through them? auto: if their "
+             "viscosity depends on pressure"},
     {"grains.side_walls", KEY_SECTION, OPTIONAL,
      .help = "friction of a narrow channel's walls, 2D"},
     {"grains.side_walls.mu", KEY_NUMBER, NOT_NEGATIVE, NEEDED, .unit = "",

@@ -22,20 +22,29 @@ void fractions_update_planes(struct simulation *sim) {
   sim->planes_hold = true;
 }
 
+/* Take cc dt div(u_f) out of a fraction again, to which the terms with cc
+ * (vof.h) add up over the axes where u_f has a source, 1/s; NULL: none. */
+static void remove_dilation(const struct simulation *sim, double dt,
+                            const double *source, double *c) {
+  if (!source) return;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    c[i] -= sim->frozen->v[i] * dt * source[i];
+  }
+}
+
 /* The tracer (or c) is filled, normal and plane are its own. */
 static void sweep_tracer(struct simulation *sim, int d, double dt,
-                         double *const normal[DIM], const double *plane,
-                         double *tracer) {
+                         const double *u_f, double *const normal[DIM],
+                         const double *plane, double *tracer) {
   const struct mesh *mesh = sim->mesh;
-  const double *u_f = sim->u_f->v;
   double *flux = sim->face[0]->v;
   vof_flux(mesh, d, dt, u_f, sim->open, tracer, normal, plane, flux);
   vof_update(mesh, d, dt, u_f, flux, sim->frozen->v, tracer);
 }
 
 /* The planes of c are left as they are, for it may be set back. */
-static void advance_tracer(struct simulation *sim, double dt,
-                           struct field *tracer) {
+static void advance_tracer(struct simulation *sim, double dt, const double *u_f,
+                           const double *source, struct field *tracer) {
   bool held = tracer == sim->c && sim->planes_hold;
   vof_freeze(sim->mesh, tracer->v, sim->frozen->v);
   for (int s = 0; s < DIM; s++, held = false) {
@@ -44,12 +53,14 @@ static void advance_tracer(struct simulation *sim, double dt,
     field_arrays(held ? sim->normal : sim->cell, normal);
     field_fill(sim->mesh, tracer);
     if (!held) vof_reconstruct(sim->mesh, tracer->v, normal, plane);
-    sweep_tracer(sim, d, dt, normal, plane, tracer->v);
+    sweep_tracer(sim, d, dt, u_f, normal, plane, tracer->v);
   }
+  remove_dilation(sim, dt, source, tracer->v);
 }
 
 /* u and c are filled. */
-static void sweep_grains(struct simulation *sim, int d, double dt) {
+static void sweep_grains(struct simulation *sim, int d, double dt,
+                         const double *u_f) {
   const struct mesh *mesh = sim->mesh;
   double density[2], *u[DIM], *start[DIM], *normal[DIM];
   double *c_old = sim->cell[C_OLD]->v;
@@ -63,11 +74,11 @@ static void sweep_grains(struct simulation *sim, int d, double dt) {
   }
   memcpy(c_old, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
   fractions_update_planes(sim);
-  sweep_tracer(sim, d, dt, normal, sim->plane->v, sim->c->v);
+  sweep_tracer(sim, d, dt, u_f, normal, sim->plane->v, sim->c->v);
   sim->planes_hold = false;
-  momentum_flux(mesh, d, dt, density, sim->u_f->v, c_old, sim->face[0]->v,
-                sim->band->v, u, &flux);
-  momentum_update(mesh, d, dt, density, sim->u_f->v, c_old, sim->frozen->v,
+  momentum_flux(mesh, d, dt, density, u_f, c_old, sim->face[0]->v, sim->band->v,
+                u, &flux);
+  momentum_update(mesh, d, dt, density, u_f, c_old, sim->frozen->v,
                   sim->band->v, start, &flux, u);
 }
 
@@ -84,20 +95,25 @@ static void log_divergence(struct simulation *sim, double dt) {
   sim->divergence_volume += mesh_sum(mesh, sum);
 }
 
-/* Axis by axis, in an order that alternates from step to step. u, c and band
- * are filled. */
-static void sweep_fractions(struct simulation *sim, double dt) {
+void fractions_carry(struct simulation *sim, double dt, const double *u_f,
+                     const double *source) {
   const struct mesh *mesh = sim->mesh;
   for (int k = 0; k < sim->params->ntracers; k++) {
-    advance_tracer(sim, dt, sim->tracer[k]);
+    advance_tracer(sim, dt, u_f, source, sim->tracer[k]);
   }
   if (sim->params->single_phase) return;
   vof_freeze(mesh, sim->c->v, sim->frozen->v);
   for (int s = 0; s < DIM; s++) {
     if (s > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
-    sweep_grains(sim, (int)((sim->step + s) % DIM), dt);
+    sweep_grains(sim, (int)((sim->step + s) % DIM), dt, u_f);
   }
-  log_divergence(sim, dt);
+  remove_dilation(sim, dt, source, sim->c->v);
+}
+
+/* Sweeps with the velocity of the step. u, c and band are filled. */
+static void sweep_fractions(struct simulation *sim, double dt) {
+  fractions_carry(sim, dt, sim->u_f->v, NULL);
+  if (!sim->params->single_phase) log_divergence(sim, dt);
 }
 
 static void mark_band(struct simulation *sim, int rings) {
@@ -166,14 +182,14 @@ void fractions_synchronise(struct simulation *sim) {
   double *before = sim->cell[C_OLD]->v;
   memcpy(before, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
   if (sim->params->single_phase || sim->dt == 0) return;
-  advance_tracer(sim, 0.5 * sim->dt, sim->c);
+  advance_tracer(sim, 0.5 * sim->dt, sim->u_f->v, NULL, sim->c);
   if (mesh_max(mesh, vof_excess(mesh, sim->c->v)) <= VOF_EMPTY) return;
   const bool held = sim->planes_hold;
   const double half = 0.5 * sim->dt;
   const int parts = parts_of(half * time_step_rate(sim), VOF_CFL);
   fractions_desynchronise(sim);
   for (int k = 0; k < parts; k++, sim->planes_hold = false) {
-    advance_tracer(sim, half / parts, sim->c);
+    advance_tracer(sim, half / parts, sim->u_f->v, NULL, sim->c);
   }
   sim->planes_hold = held;
 }

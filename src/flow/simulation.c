@@ -164,6 +164,12 @@ static void add_walls(struct simulation *sim) {
                        REMAP_AVERAGE, false);
 }
 
+/* What gas needs that leaves through the grains (percolation.h). */
+static void add_percolation(struct simulation *sim) {
+  sim->source = add_cell(sim, "source", "1/s", "", REMAP_NONE, false);
+  sim->carrier = add_face(sim, "carrier");
+}
+
 static void add_scratch(struct simulation *sim) {
   static const char *const normal[] = {"normal_x", "normal_y", "normal_z"};
   static const char *const old[] = {"old_x", "old_y", "old_z"};
@@ -185,6 +191,7 @@ static void add_scratch(struct simulation *sim) {
   }
   add_known(sim);
   if (sim->params->side_walls.mu > 0) add_walls(sim);
+  if (sim->params->permeable) add_percolation(sim);
   const int ncells = (sim->params->theta < 1 ? 3 : 2) * DIM;
   for (int k = 0; k < ncells; k++) {
     sim->cell[k] = add_cell(sim, cell[k], "", "", REMAP_NONE, false);

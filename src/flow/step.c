@@ -22,6 +22,7 @@
 #include "talus/fractions.h"
 #include "talus/log.h"
 #include "talus/minmax.h"
+#include "talus/percolation.h"
 #include "talus/poisson.h"
 #include "talus/projection.h"
 #include "talus/properties.h"
@@ -490,7 +491,9 @@ static void lap(struct simulation *sim, enum step_stage stage) {
 
 /* Stages 3 to 8: the state at `time` + dt. */
 static void advance_state(struct simulation *sim, double dt, double rate) {
-  fractions_advance(sim, 0.5 * (sim->dt + dt), rate), lap(sim, STAGE_FRACTION);
+  const double dt_c = 0.5 * (sim->dt + dt);
+  fractions_advance(sim, dt_c, rate);
+  percolation_advance(sim, dt_c), lap(sim, STAGE_FRACTION);
   update_density(sim);
   update_acceleration(sim), lap(sim, STAGE_DENSITY);
   update_viscosity(sim, sim->u_old);
@@ -515,6 +518,8 @@ static void set_back(struct simulation *sim, const struct simulation *before) {
   sim->planes_hold = false;
   sim->energy.dissipated = before->energy.dissipated;
   sim->divergence_volume = before->divergence_volume;
+  sim->percolation = before->percolation;
+  sim->travel = before->travel;
 }
 
 /* Take a step of at most dt_max, as short as it has to be; returns its dt, or
