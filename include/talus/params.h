@@ -73,8 +73,13 @@ enum criterion_type {
   CRITERION_FUNCTION   /* level returned by a function of position */
 };
 
+/* The phase that a criterion minds: a leaf counts when it, or a leaf beside
+ * it, holds more than PROPERTIES_GAS of that phase. */
+enum criterion_phase { CRITERION_BOTH, CRITERION_GRAINS, CRITERION_GAS };
+
 struct criterion {
   enum criterion_type type;
+  enum criterion_phase only;
   int level;        /* finest level asked for */
   double width;     /* INTERFACE: half-width of the band, in finest cells */
   double threshold; /* ESTIMATE: in units of velocity */

@@ -61,7 +61,7 @@ static void read_options(struct case_file *file, const char *path,
       lua_getfield(L, -1, option->path);
     else
       lua_pushnil(L);
-    if (kind->type == CRITERION_FUNCTION)
+    if (kind->type == CRITERION_FUNCTION && option->type == KEY_LEVEL)
       read_level_function(file, inner, option, criterion);
     else
       read_value(file, option, inner, criterion);
@@ -79,6 +79,11 @@ static void read_criterion(struct case_file *file, const char *path) {
   if (criterion->level > params->level_max)
     read_fail_at(file, path, "%s: level = %d is above domain.level = %d", path,
                  criterion->level, params->level_max);
+  if (criterion->only == CRITERION_GAS && params->gas.rheology.model == NULL)
+    read_fail_at(file, path,
+                 "%s: only = \"gas\", but the case has no gas: leave `only` "
+                 "out, or give `gas`",
+                 path);
   lua_pop(file->L, 1);
 }
 

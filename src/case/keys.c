@@ -18,6 +18,8 @@
 /* enum limiter */
 static const char *const LIMITERS[] = {"none", "minmod", "generalised_minmod",
                                        NULL};
+/* enum criterion_phase */
+static const char *const PHASES[] = {"both", "grains", "gas", NULL};
 
 /* enum permeability */
 static const char *const PERMEABILITIES[] = {"auto", "no", "yes", NULL};
@@ -185,12 +187,12 @@ static const struct key BOUNDARY_OPTIONS[] = {
 };
 
 static const struct criterion_kind CRITERION_KINDS[] = {
-    {"interface", CRITERION_INTERFACE, {"width", "level"},
+    {"interface", CRITERION_INTERFACE, {"width", "level", "only"},
      "a band around the surface of the grains"},
     {"inside", CRITERION_INSIDE, {"level"}, "all of the grains"},
-    {"velocity", CRITERION_ESTIMATE, {"threshold", "level"},
+    {"velocity", CRITERION_ESTIMATE, {"threshold", "level", "only"},
      "where the wavelet estimate of the velocity's error is large"},
-    {"position", CRITERION_FUNCTION, {"level"},
+    {"position", CRITERION_FUNCTION, {"level", "only"},
      "level = function of position, constant in time"},
 };
 
@@ -203,6 +205,10 @@ static const struct key CRITERION_OPTIONS[] = {
      .offset = AT(threshold), .help = "largest error left alone"},
     {"level", KEY_LEVEL, SOME_LEVEL, DEFAULT "domain.level", .unit = "",
      .offset = AT(level), .help = "finest level asked for"},
+    {"only", KEY_CHOICE, ANY, DEFAULT "both", .unit = "", .offset = AT(only),
+     .choices = PHASES,
+     .help = "where it applies: in leaves that hold some of this phase and "
+             "those beside them"},
 };
 /* clang-format on */
 

@@ -220,12 +220,12 @@ static bool push_default(struct case_file *file, const struct key *key) {
   lua_State *L = file->L;
   const char *text = key->fallback;
   if (*text == '\0') return false;
-  for (int i = 0; i < file->nrows; i++)
-    if (strcmp(file->rows[i].key, text) == 0) text = file->rows[i].value;
-  if (key->type == KEY_CHOICE) {
+  if (key->type == KEY_CHOICE) { /* a parameter may have that very name */
     lua_pushstring(L, text);
     return true;
   }
+  for (int i = 0; i < file->nrows; i++)
+    if (strcmp(file->rows[i].key, text) == 0) text = file->rows[i].value;
   double value = strtod(text, NULL);
   if (key->type != KEY_VECTOR && key->type != KEY_INTEGERS) {
     lua_pushnumber(L, value);

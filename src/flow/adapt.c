@@ -35,12 +35,40 @@ static void mark_surface(const struct mesh *mesh, const double *c,
   }
 }
 
+/* What a criterion may ask of a leaf. */
+enum { NOTHING, KEEP, DIVIDE };
+
 struct wanted {
   int8_t *divide; /* [nleaves] finest level asked for */
   int8_t *keep;   /* level above which a leaf may be merged */
+  int8_t *may;    /* what the criterion at hand may ask for */
 };
 
+/* Confine a criterion to the leaves that hold its phase and to those beside
+ * them; leaves up to HYSTERESIS farther away it may keep. c is filled. */
+static void confine(struct simulation *sim, enum criterion_phase only,
+                    struct wanted *wanted) {
+  const struct mesh *mesh = sim->mesh;
+  double *mark = sim->cell[1]->v;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double c = sim->c->v[i];
+    mark[i] = only == CRITERION_BOTH ||
+              (only == CRITERION_GRAINS ? c : 1 - c) > PROPERTIES_GAS;
+    wanted->may[i] = mark[i] > 0 ? DIVIDE : NOTHING;
+  }
+  for (int k = 1; k <= 1 + HYSTERESIS && only != CRITERION_BOTH; k++) {
+    mesh_spread(mesh, mark);
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      if (mark[i] > 0 && wanted->may[i] == NOTHING) {
+        wanted->may[i] = k > 1 ? KEEP : DIVIDE;
+      }
+    }
+  }
+}
+
 static void want(struct wanted *wanted, int32_t i, int divide, int keep) {
+  if (wanted->may[i] < DIVIDE) divide = 0;
+  if (wanted->may[i] < KEEP) keep = 0;
   if (divide > wanted->divide[i]) wanted->divide[i] = (int8_t)divide;
   if (keep > wanted->keep[i]) wanted->keep[i] = (int8_t)keep;
 }
@@ -120,9 +148,11 @@ static void want_openings(const struct simulation *sim, struct wanted *wanted) {
 
 static void apply_criteria(struct simulation *sim, struct wanted *wanted) {
   const struct params *params = sim->params;
+  confine(sim, CRITERION_BOTH, wanted);
   want_openings(sim, wanted);
   for (int k = 0; k < params->ncriteria; k++) {
     const struct criterion *criterion = &params->criterion[k];
+    confine(sim, criterion->only, wanted);
     switch (criterion->type) {
       case CRITERION_INTERFACE:
         want_surface(sim, criterion, wanted);
@@ -164,6 +194,7 @@ static void cap_count(const struct simulation *sim, int8_t *flag) {
 void adapt_flags(struct simulation *sim, int8_t *flag) {
   const struct mesh *mesh = sim->mesh;
   struct wanted wanted = {MEM_NEW(int8_t, mesh->nleaves),
+                          MEM_NEW(int8_t, mesh->nleaves),
                           MEM_NEW(int8_t, mesh->nleaves)};
   apply_criteria(sim, &wanted);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -174,6 +205,7 @@ void adapt_flags(struct simulation *sim, int8_t *flag) {
   cap_count(sim, flag);
   mem_free(wanted.divide);
   mem_free(wanted.keep);
+  mem_free(wanted.may);
 }
 
 bool adapt_is_due(const struct simulation *sim) {
@@ -186,6 +218,9 @@ bool adapt_is_due(const struct simulation *sim) {
   for (int k = 0; k < params->ncriteria; k++) {
     if (params->criterion[k].type == CRITERION_INTERFACE) {
       spare = min2(spare, max2(params->criterion[k].width - 1, 0));
+    }
+    if (params->criterion[k].only != CRITERION_BOTH) {
+      spare = min2(spare, HYSTERESIS);
     }
   }
   return sim->travel >= spare;

@@ -145,6 +145,13 @@ bad_edit patch 'patch.lua:8: boundary.top.*"hole", which boundary.patches' \
   'function() return "hole" end, patches = { outlet = "outflow" }'
 bad_edit criterion 'criterion.lua:9: adapt\[1\] = "interfase": .*interface' \
   'output =' 'adapt = { "interfase" }, output ='
+bad_edit only 'only.lua:9: adapt\[1\].only = "grain": "both", "grains" or' \
+  'output =' 'adapt = { { "interface", only = "grain" } }, output ='
+bad_case only_gas 'only_gas.lua:4: adapt\[1\]: only = "gas", but .* no gas' \
+  'return { dimension = 2, domain = { size = 1, level = 4 }, gravity = { 0, 0 },
+  grains = { density = 1, rheology = { "newtonian", eta = 1 } },
+  boundary = { left = "slip", right = "slip", bottom = "slip", top = "outflow" },
+  adapt = { { "velocity", threshold = 1, only = "gas" } }, output = { stop = 1 } }'
 bad_edit tracer 'tracer.lua:9: tracers.pressure: this name is taken' \
   'output =' 'tracers = { pressure = function() return 1 end }, output ='
 bad_edit dimension 'dimension.lua:1: dimension = 4: .*from 2 to 3' \

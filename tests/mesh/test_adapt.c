@@ -132,6 +132,48 @@ START_TEST(the_estimate_finds_a_jump_of_velocity) {
 }
 END_TEST
 
+/* The jump crosses grains and gas. A leaf that was divided, and merged into no
+ * other since, lies within 4 leaves of the phase: 1 beside it, 2 of hysteresis,
+ * 1 for the rest of a family. Rounds and a second adaptation change nothing. */
+START_TEST(a_criterion_is_confined_to_a_phase) {
+  const enum criterion_phase only = _i ? CRITERION_GAS : CRITERION_GRAINS;
+  const double side = only == CRITERION_GRAINS ? 1 : -1;
+  const double h = 1.0 / (1 << FINE);
+  struct params params = box_params(FINE);
+  struct body body = {{0.5, 0.5, 0.5}, 0.25};
+  params.shape = (struct function){ball, &body};
+  params.level_min = COARSE;
+  params.velocity[DIM - 1] = (struct function){jump_velocity, NULL};
+  params.criterion[params.ncriteria++] =
+      (struct criterion){.type = CRITERION_ESTIMATE,
+                         .only = only,
+                         .level = FINE,
+                         .threshold = 0.02};
+  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->mesh;
+  double inside = 0, outside = 0, coarse = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double c = sim->c->v[i], away = fabs(mesh->x[i][0] - 0.5);
+    double x[3] = {0};
+    for (int d = 0; d < DIM; d++) x[d] = mesh->x[i][d];
+    if ((only == CRITERION_GRAINS ? c : 1 - c) > 1e-6 && away < 0.02) {
+      inside++, coarse += mesh->level[i] < FINE;
+    }
+    if (mesh->level[i] == FINE && side * ball(&body, x) < -4 * sqrt(DIM) * h) {
+      outside++;
+    }
+  }
+  inside = mesh_sum(mesh, inside), coarse = mesh_sum(mesh, coarse);
+  outside = mesh_sum(mesh, outside);
+  const bool changed = adapt_grid(sim);
+  simulation_destroy(sim);
+  ck_assert_double_gt(inside, 0);
+  ck_assert_double_eq(coarse, 0);
+  ck_assert_double_eq(outside, 0);
+  ck_assert(!changed);
+}
+END_TEST
+
 /* Caps just below the sizes that the grid goes through when there is none.
  * What balance adds is not foreseen: a tenth at most. */
 static double near_a_point(void *context, const double x[3]) {
@@ -276,6 +318,7 @@ Suite *adapt_suite(void) {
   tcase_add_test(tc, everything_inside_takes_its_level);
   tcase_add_test(tc, a_function_of_position_sets_the_level);
   tcase_add_test(tc, the_estimate_finds_a_jump_of_velocity);
+  tcase_add_loop_test(tc, a_criterion_is_confined_to_a_phase, 0, 2);
   tcase_add_loop_test(tc, the_cap_is_respected, 0, 2);
   tcase_add_loop_test(tc, a_second_adaptation_changes_nothing, 0, 2);
   tcase_add_test(tc, the_band_follows_the_surface);

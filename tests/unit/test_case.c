@@ -266,9 +266,11 @@ END_TEST
 
 START_TEST(criteria_take_level_of_domain_by_default) {
   struct case_file *file = load(
+      "param('both', 3) -- named like the default of a choice\n"
       "return { adapt = { { 'interface', width = 2.5 }, 'inside',\n"
       "  { 'velocity', threshold = 0.1, level = 4 },\n"
-      "  { 'position', level = function(x, y) return 3 + x end },\n"
+      "  { 'position', only = 'gas', level = function(x, y) return 3 + x end "
+      "},\n"
       "  every = 7, max_cells = 1e4 },\n" REST "}");
   const struct params *params = case_params(file);
   const double x[3] = {1, 0, 0};
@@ -278,6 +280,8 @@ START_TEST(criteria_take_level_of_domain_by_default) {
   ck_assert_int_eq(params->criterion[0].level, 5);
   ck_assert_int_eq(params->criterion[1].type, CRITERION_INSIDE);
   ck_assert_int_eq(params->criterion[2].level, 4);
+  ck_assert_int_eq(params->criterion[2].only, CRITERION_BOTH);
+  ck_assert_int_eq(params->criterion[3].only, CRITERION_GAS);
   const struct function *f = &params->criterion[3].function;
   ck_assert_double_eq(f->eval(f->context, x), 4);
   ck_assert_int_eq(params->adapt_every, 7);
