@@ -112,14 +112,6 @@ class Sheet:
 # Outlines
 
 
-def choose(items, most):
-    """At most so many of a list, evenly, with the first and the last."""
-    if len(items) <= most:
-        return items
-    return [items[round(k * (len(items) - 1) / (most - 1))]
-            for k in range(most)]
-
-
 class Outline:
     """One panel: the heap at a time, and the reference if it has that time."""
 
@@ -176,7 +168,8 @@ def plot_outlines(options, parameters, units, reference, scale):
          if len(p[1]) > 1])
     if not has_shape(profiles):
         return None
-    outlines = [Outline(p, reference, scale) for p in choose(profiles, 6)]
+    outlines = [Outline(p, reference, scale)
+                for p in run_data.choose(profiles, 6)]
     left = min(o.x[0] for o in outlines)
     width = 1.03 * (max(o.right() for o in outlines) - left)
     height = 1.08 * max(o.top() for o in outlines)
@@ -478,7 +471,7 @@ def top_speed(snapshot):
 
 
 def make_film(options, parameters, units):
-    paths = choose(run_data.find_snapshots(options.directory),
+    paths = run_data.choose(run_data.find_snapshots(options.directory),
                    options.max_frames)
     if len(paths) < 2:
         return []

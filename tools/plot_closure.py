@@ -58,7 +58,7 @@ def write_data(path, curves, arguments):
     with open(path, "w", newline="", encoding="utf-8") as f:
         for k, argument in enumerate(arguments):
             f.write(f"# curve {k}: {argument}\n")
-        writer = csv.writer(f)
+        writer = csv.writer(f, lineterminator="\n")
         writer.writerow(["curve", *names])
         for k, curve in enumerate(curves):
             for row in zip(*(curve[name] for name in names)):

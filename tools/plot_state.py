@@ -121,7 +121,7 @@ def make_figure(snapshots, times, units, field):
 def write_data(path, snapshots, field):
     """The cells of grains in all panels, in the units of the run."""
     with open(path, "w", newline="", encoding="utf-8") as f:
-        writer = csv.writer(f)
+        writer = csv.writer(f, lineterminator="\n")
         writer.writerow(["time", "x", "y", "width", "height", field])
         for s in snapshots:
             grains = s.fields[run_data.FRACTION] > 0.5

@@ -144,6 +144,14 @@ def without_repeat(profiles, part=0.03):
     return profiles[:-1] if last - before < part * (last - first) else profiles
 
 
+def choose(items, most):
+    """At most so many of a list, evenly, with the first and the last."""
+    if len(items) <= most:
+        return items
+    return [items[round(k * (len(items) - 1) / (most - 1))]
+            for k in range(most)]
+
+
 class Reference:
     """Outlines to compare with: a csv file with lines of comment (#), a header
     `x,t=0.66,...` and a row per x; or a header `time,x,height`, the first under
