@@ -111,7 +111,11 @@ static const char SERIES_HELP[] =
     "                       density have added, J/m (3D: J)\n"
     "\n"
     "profile.csv, outlines of the heap at output.profile_times and at the\n"
-    "end: time,x,height (3D: time,x,y,height)\n";
+    "end: time,x,height (3D: time,x,y,height), then a column per tracer by "
+    "its\n"
+    "name: how much of the height is grains of that tracer, m. Columns that "
+    "are\n"
+    "not listed have the height 0.\n";
 
 static const char SNAPSHOT_HELP[] =
     "\n"

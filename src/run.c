@@ -170,6 +170,7 @@ static void write_tables(struct run *run) {
   struct diagnostics d;
   fractions_synchronise(sim);
   diagnostics_measure(sim, &d);
+  if (outline) diagnostics_measure_layers(sim, &d);
   fractions_desynchronise(sim);
   sim->energy.kinetic = d.kinetic;
   sim->energy.potential = d.potential;
@@ -180,7 +181,7 @@ static void write_tables(struct run *run) {
   if (row) write_row(run, &d);
   if (outline)
     profile_write(run->profile, sim->time, d.outline.n, d.outline.first,
-                  d.outline.spacing, d.outline.height);
+                  d.outline.spacing, d.outline.height, d.layer);
   diagnostics_free(&d);
 }
 
@@ -249,7 +250,7 @@ static void check_tables(struct run *run) {
   if (!run->tables) return;
   series_check(directory, &run->before.series, run->sim->step,
                run->params->series_every);
-  profile_check(directory, &run->before.profile, run->sim->time);
+  profile_check(directory, run->params, &run->before.profile, run->sim->time);
 }
 
 static void open_files(struct run *run) {
@@ -270,7 +271,8 @@ static void open_files(struct run *run) {
   compare_parameters(run);
   output_write_text(directory, "parameters.csv", run->parameters);
   run->series = series_open(directory, run->tables ? &before->series : NULL);
-  run->profile = profile_open(directory, run->tables ? &before->profile : NULL);
+  run->profile = profile_open(directory, run->params,
+                              run->tables ? &before->profile : NULL);
   run->snapshots = snapshots_new(directory, (int)run->before.snapshots);
 }
 

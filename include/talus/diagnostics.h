@@ -7,6 +7,7 @@
  *              cell, for cut cells the centroid below their plane
  *   max_speed  |u| of cells with c > 1/2, m/s
  *   shear_rate mean over the grains, 1/s (closure_fields.h)
+ *   layer      int min(tracer, c) dz of the heap per column, m
  *
  * Sums are compensated [neumaier_1974, doi:10.1002/zamm.19740540106] and added
  * over ranks in rank order, so that the volume is good to a few 1e-16 and the
@@ -17,6 +18,7 @@
 
 #include "talus/droplets.h"
 #include "talus/outline.h"
+#include "talus/params.h"
 
 struct simulation;
 
@@ -27,6 +29,8 @@ struct diagnostics {
   double front, height;     /* of the outline, m */
   struct droplets droplets; /* not in the outline */
   struct outline outline;
+  bool *heap;                        /* [nleaves] in the outline, owned */
+  double *layer[PARAMS_MAX_TRACERS]; /* as outline.height, owned; or NULL */
 };
 
 /* Measure the state, which is left as it is but for scratch. Collective; the
@@ -36,6 +40,11 @@ void diagnostics_measure(const struct simulation *sim,
 /* The energies alone. Collective. */
 void diagnostics_energy(const struct simulation *sim, double *kinetic,
                         double *potential);
+/* Measure the layers of the tracers at the time of u, within the heap that
+ * diagnostics_measure has found; c is synchronised (fractions.h). Collective.
+ */
+void diagnostics_measure_layers(struct simulation *sim,
+                                struct diagnostics *diagnostics);
 void diagnostics_free(struct diagnostics *diagnostics);
 
 #endif

@@ -38,5 +38,8 @@ void fractions_update_planes(struct simulation *sim);
  * sim->cell[2 DIM - 1]. Nothing else of the state changes. Collective. */
 void fractions_synchronise(struct simulation *sim);
 void fractions_desynchronise(struct simulation *sim);
+/* Copy tracer k as it is at `time` to value [nleaves]. The state stays as it
+ * is; c may be synchronised or not. Collective. */
+void fractions_read_tracer(struct simulation *sim, int k, double *value);
 
 #endif

@@ -55,7 +55,8 @@ static bool is_taken(const char *name) {
       "vertices", "level",     "parameters",    "state",      "levels",
       "fields",   "partition", "acceleration_", "velocity_",  "normal_",
       "old_",     "cell_",     "face_",         "shear_rate", "drag",
-      "nu",       "T",         "pE_over_p"};
+      "nu",       "T",         "pE_over_p",     "time",       "x",
+      "y",        "height"};
   for (size_t i = 0; i < sizeof TAKEN / sizeof *TAKEN; i++) {
     size_t n = strlen(TAKEN[i]);
     bool prefix = TAKEN[i][n - 1] == '_';

@@ -5,6 +5,7 @@
 
 #include "talus/closure_fields.h"
 #include "talus/error.h"
+#include "talus/fractions.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
 #include "talus/plane.h"
@@ -104,6 +105,7 @@ void diagnostics_measure(const struct simulation *sim,
   const struct mesh *mesh = sim->mesh;
   const double *c = sim->c->v;
   bool *heap = MEM_NEW(bool, (size_t)mesh->nleaves);
+  *diagnostics = (struct diagnostics){.heap = heap};
   diagnostics->shear_rate = closure_fields_shear_rate(sim); /* fills c */
   measure_sums(sim, c, diagnostics);
   droplets_find(mesh, c, heap, &diagnostics->droplets);
@@ -111,9 +113,26 @@ void diagnostics_measure(const struct simulation *sim,
                   &diagnostics->outline);
   diagnostics->height = outline_height(&diagnostics->outline);
   diagnostics->front = outline_front(&diagnostics->outline);
-  mem_free(heap);
+}
+
+void diagnostics_measure_layers(struct simulation *sim,
+                                struct diagnostics *diagnostics) {
+  const struct mesh *mesh = sim->mesh;
+  const double *c = sim->c->v;
+  double *part = MEM_NEW(double, (size_t)mesh->nleaves);
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    struct outline outline;
+    fractions_read_tracer(sim, k, part);
+    for (int32_t i = 0; i < mesh->nleaves; i++) part[i] = min2(part[i], c[i]);
+    outline_measure(mesh, part, diagnostics->heap,
+                    outline_axis(sim->params->gravity), &outline);
+    diagnostics->layer[k] = outline.height;
+  }
+  mem_free(part);
 }
 
 void diagnostics_free(struct diagnostics *diagnostics) {
   outline_free(&diagnostics->outline);
+  mem_free(diagnostics->heap);
+  for (int k = 0; k < PARAMS_MAX_TRACERS; k++) mem_free(diagnostics->layer[k]);
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "talus/memory.h"
 #include "talus/minmax.h"
 #include "talus/momentum.h"
 #include "talus/simulation.h"
@@ -197,4 +198,16 @@ void fractions_synchronise(struct simulation *sim) {
 void fractions_desynchronise(struct simulation *sim) {
   memcpy(sim->c->v, sim->cell[C_OLD]->v,
          (size_t)sim->mesh->nleaves * sizeof(double));
+}
+
+void fractions_read_tracer(struct simulation *sim, int k, double *value) {
+  struct field *tracer = sim->tracer[k];
+  const int32_t n = sim->mesh->nleaves;
+  double *before = MEM_NEW(double, (size_t)n);
+  memcpy(before, tracer->v, (size_t)n * sizeof(double));
+  if (sim->dt > 0)
+    advance_tracer(sim, 0.5 * sim->dt, sim->u_f->v, NULL, tracer);
+  memcpy(value, tracer->v, (size_t)n * sizeof(double));
+  memcpy(tracer->v, before, (size_t)n * sizeof(double));
+  mem_free(before);
 }

@@ -2,30 +2,48 @@
 #include "talus/profile.h"
 
 #include <stdint.h>
+#include <stdio.h>
 
 #include "talus/csv.h"
 #include "talus/error.h"
 #include "talus/memory.h"
+#include "talus/params.h"
+
+enum { HEADER_LENGTH = 32 + PARAMS_MAX_TRACERS * PARAMS_NAME_LENGTH };
 
 static const char name[] = "profile.csv";
-static const char *const header =
-    DIM == 2 ? "time,x,height" : "time,x,y,height";
 
 struct profile {
   struct csv *csv;
+  int ntracers;
 };
 
-void profile_check(const char *directory, const struct csv_mark *mark,
-                   double last_time) {
+static void write_header(const struct params *params,
+                         char header[HEADER_LENGTH]) {
+  size_t used =
+      (size_t)snprintf(header, HEADER_LENGTH, "%s",
+                       DIM == 2 ? "time,x,height" : "time,x,y,height");
+  for (int k = 0; k < params->ntracers; k++)
+    used += (size_t)snprintf(header + used, HEADER_LENGTH - used, ",%s",
+                             params->tracer[k].name);
+}
+
+void profile_check(const char *directory, const struct params *params,
+                   const struct csv_mark *mark, double last_time) {
+  char header[HEADER_LENGTH];
   const struct csv_expected expected = {
       .name = name, .header = header, .mark = *mark, .last = last_time};
+  write_header(params, header);
   csv_check(directory, &expected);
 }
 
-struct profile *profile_open(const char *directory,
+struct profile *profile_open(const char *directory, const struct params *params,
                              const struct csv_mark *kept) {
   struct profile *profile = MEM_NEW(struct profile, 1);
+  char header[HEADER_LENGTH];
+  write_header(params, header);
   profile->csv = csv_open(directory, name, header, kept);
+  profile->ntracers = params->ntracers;
   return profile;
 }
 
@@ -44,8 +62,8 @@ static bool is_listed(const int n[2], const double *height, int i, int j) {
 }
 
 void profile_write(struct profile *profile, double time, const int n[2],
-                   const double first[2], double spacing,
-                   const double *height) {
+                   const double first[2], double spacing, const double *height,
+                   double *const *layer) {
   if (base_rank() != 0) return;
   for (int j = 0; j < n[1]; j++) {
     for (int i = 0; i < n[0]; i++) {
@@ -53,7 +71,10 @@ void profile_write(struct profile *profile, double time, const int n[2],
       csv_real(profile->csv, time);
       csv_real(profile->csv, first[0] + i * spacing);
       if (DIM == 3) csv_real(profile->csv, first[1] + j * spacing);
-      csv_short(profile->csv, height[(int64_t)j * n[0] + i]);
+      const int64_t column = (int64_t)j * n[0] + i;
+      csv_short(profile->csv, height[column]);
+      for (int k = 0; k < profile->ntracers; k++)
+        csv_short(profile->csv, layer[k][column]);
       csv_end_row(profile->csv);
     }
   }
