@@ -33,7 +33,7 @@ def front(x, height):
 def compare_run(directory, reference, scale):
     """A row of results for each outline at a time of the reference."""
     rows = []
-    for time, x, height in run_data.read_profiles(directory):
+    for time, x, height, _ in run_data.read_profiles(directory):
         other = reference.at(time / scale)
         if other is None or len(x) < 2:
             continue

@@ -5,11 +5,14 @@
   tools/plot.py DIR [--reference FILE] [--time-scale SCALE] [--no-film] ...
 
 Writes into DIR (or --output):
-  outlines.png      the heap at the times of profile.csv; left out where the
-                    surface is level
+  outlines.png      the heap at the times of profile.csv, twelve of them at
+                    most, and in each column what of its height belongs to each
+                    tracer; left out where the surface is level
   fields-final.png  grid, speed, pressure, viscosity of the last snapshot
   history.png       front, height, energies, cells against time
   film.gif          all snapshots (film.mp4 too where ffmpeg is installed)
+
+Each tracer has its colour, the same in all of them.
 
 Outlines are laid over those of a reference (run_data.Reference) where the
 parameter `reference` of the case names a file or --reference gives one, its
@@ -24,90 +27,23 @@ import shutil
 import sys
 
 import run_data  # first: it says so if one of the next is missing
-from run_data import FRACTION, VELOCITY, Units, label
+from run_data import VELOCITY, label
+from sheet import (BLUE, EARTH, GRAINS, GREEN, GREY, INK, RED, SAND, RunWords,
+                   Sheet, line)
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
+from matplotlib.colors import LogNorm, Normalize, to_rgb
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import (FuncFormatter, LogLocator, MaxNLocator,
                                NullLocator)
 
-SAND, EARTH, INK = "#e3c48d", "#8a5a22", "#222222"
-BLUE, RED, GREEN, GREY = "#24639c", "#b5382b", "#3d7d3a", "#777777"
 # In every picture: a run that replaces another removes those alone that have it
 # (src/io/old_run.c).
 SIGNATURE = "talus plot"
-GRAINS = LinearSegmentedColormap.from_list("grains", ["#f7f9fb", SAND])
-
-plt.rcParams.update({
-    "figure.dpi": 110,
-    "savefig.dpi": 150,
-    "font.size": 10,
-    "axes.titlesize": 10,
-    "axes.edgecolor": INK,
-    "axes.linewidth": 0.8,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "legend.frameon": False,
-})
-
-
-def title_of(parameters, directory):
-    title = parameters.get("title", "").strip()
-    return title or pathlib.Path(directory).resolve().name
-
-
-class Sheet:
-    """Panels of one shape in rows and columns, laid out in inches, each with
-    room for a colour bar if `bars`; the titles have room however narrow the
-    panels are."""
-
-    def __init__(self, count, columns, aspect, bars, lines=1, width=9.6):
-        rows = -(-count // columns)
-        head, foot, left, gap = 0.06 + 0.23 * lines, 0.5, 0.78, 0.36
-        right = 0.75 if bars else 0.25
-        w = width / columns - left - right
-        h = min(max(w / aspect, 0.5), 6.0)
-        w = min(w, h * aspect) if h == 6.0 else w
-        step = h + gap + (0.12 if columns == 1 else 0.15)
-        pitch = max(left + w + right, 2.3)
-        total = max(columns * pitch, 4.8), head + rows * step + foot - 0.1
-        self.fig = plt.figure(figsize=total)
-        self.columns = columns
-        self.axes, self.bars = [], []
-        for k in range(count):
-            x = (left + (k % columns) * pitch
-                 + 0.5 * (total[0] - columns * pitch))
-            y = total[1] - head - (k // columns + 1) * step + 0.1
-            self.axes.append(self._add(x, y, w, h))
-            if bars:
-                self.bars.append(self._add(x + w + 0.08, y, 0.12, h))
-
-    def _add(self, x, y, w, h):
-        full = self.fig.get_size_inches()
-        return self.fig.add_axes([x / full[0], y / full[1], w / full[0],
-                                  h / full[1]])
-
-    def name_axes(self, units):
-        """Numbers at every panel, names at the outer ones only."""
-        for k, ax in enumerate(self.axes):
-            ax.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
-            if k % self.columns == 0:
-                ax.set_ylabel(label("height", units.length))
-            if k + self.columns >= len(self.axes):
-                ax.set_xlabel(label("$x$", units.length), labelpad=2)
-            else:
-                ax.tick_params(labelbottom=False)
-
-    def head(self, text):
-        size = self.fig.get_size_inches()
-        title = self.fig.text(0.5, 1 - 0.08 / size[1], text, ha="center",
-                              va="top", fontsize=11)
-        width = title.get_window_extent().width / self.fig.dpi
-        title.set_fontsize(11 * min(1, (size[0] - 0.2) / width))
-
 
 # Outlines
 
@@ -116,10 +52,11 @@ class Outline:
     """One panel: the heap at a time, and the reference if it has that time."""
 
     def __init__(self, profile, reference, scale):
-        self.time, x, height = profile
+        self.time, x, height, layers = profile
         half = 0.5 * (x[1] - x[0])  # up to the sides of the box
         self.x = np.r_[x[0] - half, x, x[-1] + half]
         self.height = np.r_[height[0], height, height[-1]]
+        self.layers = {n: np.r_[h[0], h, h[-1]] for n, h in layers.items()}
         self.other = None
         heights = reference.at(self.time / scale) if reference else None
         if heights is None:
@@ -137,22 +74,33 @@ class Outline:
         return max([self.height.max()]
                    + ([self.other[1].max()] if self.other else []))
 
-    def draw(self, ax, units, name, reference_unit):
+    def draw(self, ax, run, reference_unit):
         ax.fill_between(self.x, self.height, color=SAND, lw=0)
-        ax.plot(self.x, self.height, color=EARTH, lw=1.4, label="Talus")
-        text = f"$t$ = {self.time:.3g} {units.time}"
+        for name, height in self.layers.items():
+            ax.plot(self.x, height, color=run.colour(name), lw=1.1)
+        ax.plot(self.x, self.height, color=EARTH, lw=1.4)
+        text = f"$t$ = {self.time:.3g} {run.units.time}"
         if self.other:
             ax.plot(*self.other, "o", ms=2.8, mfc="none", mec=BLUE, mew=0.8,
-                    label=name, clip_on=False)
-            text += (f"  (reference: {self.other_time:.3g} {reference_unit}; "
-                     f"differs by {100 * self.difference:.2g} %)")
+                    clip_on=False)
+            text += (f"\nreference: {self.other_time:.3g} {reference_unit}, "
+                     f"differs by {100 * self.difference:.2g} %")
         ax.set_title(text, loc="left", pad=3, fontsize=9)
+
+
+def legend_of_outlines(run, outlines, reference):
+    """Entries for what is not the outline alone."""
+    layers = [line(run.colour(n), f"part in {n}") for n in outlines[0].layers]
+    others = ([Line2D([], [], ls="", marker="o", ms=2.8, mfc="none", mec=BLUE,
+                      mew=0.8, label=reference.name)]
+              if any(o.other for o in outlines) else [])
+    return ([line(EARTH, "height")] + layers + others if layers or others
+            else [])
 
 
 def has_shape(profiles):
     """Whether there is a heap to see, not only a level surface."""
-    return any(np.ptp(height) > 1e-2 * height.max()
-               for _, _, height in profiles)
+    return any(np.ptp(p.height) > 1e-2 * p.height.max() for p in profiles)
 
 
 def unit_of_reference(options, units, scale):
@@ -162,34 +110,41 @@ def unit_of_reference(options, units, scale):
     return "" if options.time_scale else r"$\sqrt{H_0/g}$"
 
 
-def plot_outlines(options, parameters, units, reference, scale):
+def columns_of_outlines(count, width, height):
+    """How many panels of these proportions stand side by side."""
+    if count == 1 or width > 5 * height:
+        return 1
+    return min(3, count) if width < 0.8 * height or count > 6 else 2
+
+
+def plot_outlines(options, run, reference, scale):
     profiles = run_data.without_repeat(
         [p for p in run_data.read_profiles(options.directory)
-         if len(p[1]) > 1])
+         if len(p.x) > 1])
     if not has_shape(profiles):
+        print("plot: no outlines.png, as profile.csv holds "
+              + ("no outline" if not profiles else "a level surface only"),
+              file=sys.stderr)
         return None
     outlines = [Outline(p, reference, scale)
-                for p in run_data.choose(profiles, 6)]
+                for p in run_data.choose(profiles, 12)]
     left = min(o.x[0] for o in outlines)
     width = 1.03 * (max(o.right() for o in outlines) - left)
     height = 1.08 * max(o.top() for o in outlines)
-    columns = 1 if len(outlines) == 1 or width > 5 * height else 2
-    if width < 0.8 * height:
-        columns = min(3, len(outlines))
-    sheet = Sheet(len(outlines), columns, width / height, bars=False)
-    name = reference.name if reference else ""
+    note = ", ".join((["along $x$ through the top"] if run.solid else []) + (
+        [f"{len(outlines)} of {len(profiles)} times"]
+        if len(profiles) > len(outlines) else []))
+    other = any(o.other for o in outlines)
+    sheet = Sheet(run, len(outlines),
+                  columns_of_outlines(len(outlines), width, height),
+                  width / height, bars=False, note=note,
+                  handles=legend_of_outlines(run, outlines, reference),
+                  lines=2 if other else 1, least=3.3 if other else 2.3)
     for ax, outline in zip(sheet.axes, outlines):
-        outline.draw(ax, units, name,
-                     unit_of_reference(options, units, scale))
+        outline.draw(ax, run, unit_of_reference(options, run.units, scale))
         ax.set_xlim(left, left + width)
         ax.set_ylim(0, height)
-    sheet.name_axes(units)
-    drawn = [ax for ax, o in zip(sheet.axes, outlines) if o.other]
-    if drawn:
-        drawn[0].legend(loc="upper right", fontsize=9)
-    solid = parameters.get("dimension") == "3"
-    sheet.head(title_of(parameters, options.directory)
-               + (", along $x$ through the top" if solid else ""))
+    sheet.name_axes(run.units)
     return save(sheet.fig, options, "outlines.png")
 
 
@@ -227,27 +182,59 @@ def snap_window(window, snapshot, spacing):
 
 
 def tracers_of(snapshot):
+    """Names of the tracers that grains are in."""
     return [n for n, title in snapshot.titles.items()
-            if "tracer" in title and snapshot.fields[n].max() > 0.5]
+            if "tracer" in title and snapshot.has_grains()
+            and snapshot.fields[n].max() > 0.5]
 
 
-def draw_contours(ax, snapshot, window, spacing, core):
-    """The surface of the grains, and in the colour `core` the tracers; returns
+def legend_of_tracers(run, snapshot):
+    return [line(run.colour(n), n, "--") for n in tracers_of(snapshot)]
+
+
+def draw_contour(ax, window, x, z, v, colour, style):
+    """Where a raster of fractions is 1/2, up to the sides of the window."""
+    if min(v.shape) < 2 or not np.nanmin(v) < 0.5 < np.nanmax(v):
+        return []
+    x, z = np.r_[window[0], x, window[1]], np.r_[window[2], z, window[3]]
+    return [ax.contour(x, z, np.pad(v, 1, mode="edge"), [0.5],
+                       colors=[colour], linewidths=1.1, linestyles=[style])]
+
+
+def draw_contours(ax, snapshot, window, spacing, run=None):
+    """The surface of the grains, and (`run`) the borders of tracers in them,
+    those that touch with the dashes of one in the gaps of the other; returns
     what was drawn."""
-    drawn = []
-    for name, colour, style in [(FRACTION, INK, "-")] + [
-            (n, core, "--") for n in tracers_of(snapshot)]:
-        if name not in snapshot.fields:
-            continue
-        x, z, v = snapshot.sample(snapshot.fields[name], window, spacing)
-        if min(v.shape) < 2 or np.nanmin(v) > 0.5 or np.nanmax(v) < 0.5:
-            continue
-        # up to the sides of the window
-        x, z = np.r_[window[0], x, window[1]], np.r_[window[2], z, window[3]]
-        drawn.append(ax.contour(x, z, np.pad(v, 1, mode="edge"), [0.5],
-                                colors=[colour], linewidths=0.9,
-                                linestyles=[style]))
+    x, z, grains = snapshot.sample(snapshot.grains(), window, spacing)
+    drawn = draw_contour(ax, window, x, z, grains, INK, "-")
+    for k, name in enumerate(tracers_of(snapshot) if run else []):
+        v = snapshot.sample(snapshot.fields[name], window, spacing)[2]
+        v = np.where(grains > 0.5, v, np.nan)
+        lines = draw_contour(ax, window, x, z, v, run.colour(name),
+                             (3 * (k % 2), (3, 3)))
+        for contour in lines:
+            edge_in_white(contour)
+        drawn += lines
     return drawn
+
+
+def edge_in_white(contour):
+    """Let lines be seen on any ground."""
+    effect = [withStroke(linewidth=2.2, foreground="white")]
+    for artist in getattr(contour, "collections", [contour]):
+        artist.set_path_effects(effect)
+
+
+def tint_tracers(ax, snapshot, window, spacing, run):
+    """The grains of each tracer in its colour."""
+    c = snapshot.sample(snapshot.grains(), window, spacing)[2]
+    for name in tracers_of(snapshot):
+        v = snapshot.sample(snapshot.fields[name], window, spacing)[2]
+        rgba = np.empty((*v.shape, 4))
+        rgba[..., :3] = to_rgb(run.colour(name))
+        rgba[..., 3] = 0.4 * np.clip(np.nan_to_num(np.minimum(v, c)), 0, 1)
+        ax.imshow(rgba, origin="lower", extent=window, aspect="auto",
+                  interpolation="nearest", zorder=1.5)  # above the cells
 
 
 def remove(contour):
@@ -275,7 +262,8 @@ def draw_cells(ax, snapshot, window, values, norm, cmap, lines):
 
 
 def draw_grains(ax, snapshot, window, spacing, values, norm, cmap):
-    """A raster of a field, as opaque as there are grains; returns the image."""
+    """A raster of a field, as opaque as there are grains, or of the gas where
+    there are none at all; returns the image."""
     image = ax.imshow(colours(snapshot, window, spacing, values, norm, cmap),
                       origin="lower", extent=window, interpolation="nearest",
                       aspect="auto")
@@ -285,8 +273,8 @@ def draw_grains(ax, snapshot, window, spacing, values, norm, cmap):
 def colours(snapshot, window, spacing, values, norm, cmap):
     _, _, v = snapshot.sample(values, window, spacing)
     rgba = plt.get_cmap(cmap)(norm(np.nan_to_num(v)))
-    if FRACTION in snapshot.fields:
-        _, _, c = snapshot.sample(snapshot.fields[FRACTION], window, spacing)
+    if snapshot.has_grains():
+        _, _, c = snapshot.sample(snapshot.grains(), window, spacing)
         rgba[..., 3] = np.clip(np.nan_to_num(c), 0, 1)
     return rgba
 
@@ -314,8 +302,7 @@ def norm_of(values, log=False):
 def panels_of(snapshot, units):
     """[(title, values, norm, cmap)] of the fields to show."""
     fields = snapshot.fields
-    grains = fields[FRACTION] > 0.5 if FRACTION in fields else np.ones(
-        len(snapshot.low), bool)
+    grains = snapshot.grains() > 0.5
     if not grains.any():
         grains[:] = True
     found = []
@@ -331,7 +318,15 @@ def panels_of(snapshot, units):
             for name, title, values, cmap, log in found]
 
 
-def plot_fields(options, parameters, units):
+def note_of_fields(run, snapshot):
+    note = (f"$t$ = {snapshot.time:.4g} {run.units.time}, "
+            f"{snapshot.nleaves} cells")
+    if run.solid:
+        note += f", cut at $y$ = {snapshot.cut:.3g} {run.units.length}"
+    return note + ("" if snapshot.has_grains() else ", no grains, fields of the gas")
+
+
+def plot_fields(options, run):
     paths = run_data.find_snapshots(options.directory)
     if not paths:
         return None
@@ -339,31 +334,29 @@ def plot_fields(options, parameters, units):
     window = window_of(snapshot)
     spacing = raster_spacing(snapshot, window)
     window = snap_window(window, snapshot, spacing)
-    panels = panels_of(snapshot, units)
-    fraction = snapshot.fields.get(FRACTION, np.ones(len(snapshot.low)))
+    panels = panels_of(snapshot, run.units)
     aspect = (window[1] - window[0]) / (window[3] - window[2])
     columns = 1 if aspect > 3.5 else 2 if aspect > 0.5 else 1 + len(panels)
-    sheet = Sheet(1 + len(panels), columns, aspect, bars=True, lines=2)
-    draw_cells(sheet.axes[0], snapshot, window, fraction, Normalize(0, 1),
-                GRAINS, not options.no_grid)
-    draw_contours(sheet.axes[0], snapshot, window, spacing, RED)
+    sheet = Sheet(run, 1 + len(panels), columns, aspect, bars=True,
+                  note=note_of_fields(run, snapshot),
+                  handles=legend_of_tracers(run, snapshot))
+    draw_cells(sheet.axes[0], snapshot, window, snapshot.grains(),
+               Normalize(0, 1), GRAINS, not options.no_grid)
+    tint_tracers(sheet.axes[0], snapshot, window, spacing, run)
+    draw_contours(sheet.axes[0], snapshot, window, spacing, run)
     draw_bar(sheet.bars[0], Normalize(0, 1), GRAINS)
     sheet.axes[0].set_title("grains" + ("" if options.no_grid
-                                        else " and grid"), loc="left", pad=4)
+                                        else " and grid"), loc="left", pad=7)
     for ax, bar, (title, values, norm, cmap) in zip(
             sheet.axes[1:], sheet.bars[1:], panels):
         draw_grains(ax, snapshot, window, spacing, values, norm, cmap)
-        draw_contours(ax, snapshot, window, spacing, "white")
+        draw_contours(ax, snapshot, window, spacing, run)
         draw_bar(bar, norm, cmap)
-        ax.set_title(title, loc="left", pad=4)
+        ax.set_title(title, loc="left", pad=7)
     for ax in sheet.axes:
         ax.set_xlim(window[0], window[1])
         ax.set_ylim(window[2], window[3])
-    sheet.name_axes(units)
-    note = "".join(f"; dashed: {n}" for n in tracers_of(snapshot)[:1])
-    sheet.head(f"{title_of(parameters, options.directory)}\n"
-               f"$t$ = {snapshot.time:.4g} {units.time}, "
-               f"{snapshot.nleaves} cells{note}")
+    sheet.name_axes(run.units)
     return save(sheet.fig, options, "fields-final.png")
 
 
@@ -393,57 +386,68 @@ def words_on_volume(change):
     return f"relative change of the volume of grains: {words}"
 
 
-def plot_history(options, parameters, units):
-    s = run_data.read_series(options.directory)
-    if len(s["time"]) < 2:
-        return None
-    t = s["time"]
-    change = s["volume"] / (s["volume"][0] or 1.0) - 1
-    change = change[np.argmax(np.abs(change))]
-    fig, axes = plt.subplots(2, 2, figsize=(9.6, 6.2), sharex=True,
-                             layout="constrained")
-    ax = axes[0, 0]
-    ax.plot(t, s["front"], color=EARTH, label="front")
-    ax.plot(t, s["height"], color=BLUE, label="height")
+def draw_length(ax, s, units):
+    ax.plot(s["time"], s["front"], color=EARTH, label="front")
+    ax.plot(s["time"], s["height"], color=BLUE, label="height")
+    ax.set_title("front and height of the heap", loc="left")
     ax.set_ylabel(label("length", units.length))
     if s["front"].min() >= 0:
         ax.set_ylim(bottom=0)
 
-    ax = axes[0, 1]
+
+def draw_energy(ax, s, parameters, change):
     scale = abs(s["kinetic"][0] + s["potential"][0]) or 1.0
     for name, colour in (("potential", BLUE), ("kinetic", EARTH),
                          ("dissipated", RED), ("numerical", GREY)):
-        ax.plot(t, s[name] / scale, color=colour, label=name_of_rest(
+        ax.plot(s["time"], s[name] / scale, color=colour, label=name_of_rest(
             parameters, change) if name == "numerical" else name)
+    ax.set_title("energy of the grains", loc="left")
     ax.set_ylabel("energy / initial energy")
 
-    ax = axes[1, 0]
-    ax.plot(t, s["max_speed"], color=GREEN, label="fastest grains")
+
+def draw_speed(ax, s, units):
+    ax.plot(s["time"], s["max_speed"], color=GREEN)
     ax.set_ylabel(label("speed", units.field("m/s")))
     ax.set_ylim(bottom=0)
+    rest = (run_data.arrest_time(s) if "mean_shear_rate" in s else None)
+    text = "fastest grains"
+    if rest is not None:
+        text += f"; at rest after {rest:.3g} {units.time}"
+        ax.axvline(rest, color=GREY, lw=0.8)
+    ax.set_title(text, loc="left")
 
-    ax = axes[1, 1]
-    ax.plot(t, s["cells"], color=INK, label="cells of the grid")
+
+def draw_count(ax, s):
+    ax.plot(s["time"], s["cells"], color=INK)
+    ax.set_title("cells of the grid", loc="left")
     ax.set_ylabel("cells")
-    ax.set_ylim(bottom=0)
+    ax.set_ylim(0, 1.05 * s["cells"].max())
+
+
+def plot_history(options, run):
+    s = run_data.read_series(options.directory)
+    if len(s["time"]) < 2:
+        return None
+    if not s["volume"].any():
+        print("plot: no history.png, as there are no grains", file=sys.stderr)
+        return None
+    change = s["volume"] / (s["volume"][0] or s["volume"].max()) - 1
+    change = change[np.argmax(np.abs(change))]
+    fig, axes = plt.subplots(2, 2, figsize=(9.6, 6.2), sharex=True,
+                             layout="constrained")
+    draw_length(axes[0, 0], s, run.units)
+    draw_energy(axes[0, 1], s, run.parameters, change)
+    draw_speed(axes[1, 0], s, run.units)
+    draw_count(axes[1, 1], s)
     for ax in axes.flat:
         ax.margins(x=0)
         ax.grid(alpha=0.25, lw=0.6)
-        if len(ax.lines) > 1:
-            ax.legend(fontsize=9, loc="best")
-        else:
-            ax.set_title(ax.lines[0].get_label(), loc="left")
-    axes[0, 0].set_title("front and height of the heap", loc="left")
-    axes[0, 1].set_title("energy of the grains", loc="left")
-    rest = (run_data.arrest_time(s) if "mean_shear_rate" in s else None)
-    if rest is not None:
-        axes[1, 0].set_title(f"fastest grains; at rest after {rest:.3g} "
-                             f"{units.time}", loc="left")
-        axes[1, 0].axvline(rest, color=GREY, lw=0.8)
+    for ax in axes[0]:
+        ax.legend(fontsize=9, loc="best")
     for ax in axes[1]:
-        ax.set_xlabel(label("time", units.time))
-    fig.suptitle(f"{title_of(parameters, options.directory)}\n"
-                 + words_on_volume(change), fontsize=11)
+        ax.set_xlabel(label("time", run.units.time))
+    fig.suptitle("\n".join(run.title(9.6) + [words_on_volume(change)]),
+                 fontsize=11)
     return save(fig, options, "history.png")
 
 
@@ -465,14 +469,13 @@ def top_speed(snapshot):
     """Of all grains but the fastest, which are few and would leave the rest
     dark."""
     values = speed(snapshot)
-    if FRACTION in snapshot.fields:
-        values = values[snapshot.fields[FRACTION] > 0.5]
+    values = values[snapshot.grains() > 0.5]
     return float(np.quantile(values, 0.99)) if values.size else 0.0
 
 
-def make_film(options, parameters, units):
+def make_film(options, run):
     paths = run_data.choose(run_data.find_snapshots(options.directory),
-                   options.max_frames)
+                            options.max_frames)
     if len(paths) < 2:
         return []
     snapshots = [run_data.Snapshot(p).slice() for p in paths]
@@ -484,14 +487,15 @@ def make_film(options, parameters, units):
     norm = Normalize(0, max(map(top_speed, snapshots)) or 1.0)
     cmap = "viridis"
     aspect = (window[1] - window[0]) / (window[3] - window[2])
-    sheet = Sheet(1, 1, aspect, bars=True)
+    handles = {h.get_label(): h for snapshot in snapshots
+               for h in legend_of_tracers(run, snapshot)}
+    sheet = Sheet(run, 1, 1, aspect, bars=True, handles=[*handles.values()])
     ax = sheet.axes[0]
     image = draw_grains(ax, snapshots[0], window, spacing, speed(snapshots[0]),
                         norm, cmap)
     draw_bar(sheet.bars[0], norm, cmap)
-    sheet.name_axes(units)
+    sheet.name_axes(run.units)
     text = ax.set_title("", loc="left")
-    sheet.head(title_of(parameters, options.directory))
 
     writers = [("film.gif", PillowWriter(fps=options.fps))]
     if shutil.which("ffmpeg"):
@@ -503,9 +507,9 @@ def make_film(options, parameters, units):
     for snapshot in snapshots:
         image.set_data(colours(snapshot, window, spacing, speed(snapshot), norm,
                                cmap))
-        contours = draw_contours(ax, snapshot, window, spacing, "white")
-        text.set_text(f"$t$ = {snapshot.time:.2f} {units.time}, "
-                      + label("speed", units.field("m/s")))
+        contours = draw_contours(ax, snapshot, window, spacing, run)
+        text.set_text(f"$t$ = {snapshot.time:.2f} {run.units.time}, "
+                      + label("speed", run.units.field("m/s")))
         for _, writer in writers:
             writer.grab_frame()
         for contour in contours:
@@ -563,19 +567,19 @@ def main():
         sys.exit(2)
     options.output.mkdir(parents=True, exist_ok=True)
     parameters = run_data.read_parameters(options.directory)
-    units = Units(parameters)
+    run = RunWords(parameters, options.directory)
     try:
         path = options.reference or run_data.find_reference(options.directory,
                                                             parameters)
         reference = run_data.Reference(path) if path else None
         scale = run_data.parse_scale(options.time_scale, parameters)
         written = [
-            plot_outlines(options, parameters, units, reference, scale),
-            plot_fields(options, parameters, units),
-            plot_history(options, parameters, units),
+            plot_outlines(options, run, reference, scale),
+            plot_fields(options, run),
+            plot_history(options, run),
         ]
         if not options.no_film:
-            written += make_film(options, parameters, units)
+            written += make_film(options, run)
     except (OSError, ValueError, KeyError) as error:
         sys.exit(f"plot: {error}")
     for path in written:

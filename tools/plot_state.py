@@ -73,7 +73,7 @@ def draw(ax, snapshot, window, field, norm, cmap):
     rgba = plt.get_cmap(cmap)(norm(np.nan_to_num(v)))
     rgba[..., 3] = np.nan_to_num(c) > 0.5
     ax.imshow(rgba, origin="lower", extent=window, interpolation="nearest")
-    plot.draw_contours(ax, snapshot, window, spacing, plot.INK)
+    plot.draw_contours(ax, snapshot, window, spacing)
 
 
 def colours_of(snapshots, field):

@@ -5,6 +5,7 @@ import math
 import pathlib
 import re
 import sys
+from typing import NamedTuple
 
 try:  # here for all tools, which import this file before any of these
     import h5py
@@ -13,6 +14,8 @@ try:  # here for all tools, which import this file before any of these
 except ImportError:
     sys.exit(f"{pathlib.Path(sys.argv[0]).name}: needs numpy, h5py, matplotlib:"
              " run it with a python3 that has them, such as /usr/bin/python3")
+
+from matplotlib.mathtext import MathTextParser
 
 matplotlib.use("Agg")
 
@@ -70,6 +73,23 @@ class Units:
                 "Pa s": rf"$\rho\sqrt{{g\,{one}^3}}$"}.get(unit, "")
 
 
+def title_lines(parameters, directory, most):
+    """The title of the case, else the name of the directory, in lines of about
+    `most` letters; a text that is no mathematics is taken as it is."""
+    text = " ".join(parameters.get("title", "").split())
+    text = text or pathlib.Path(directory).resolve().name
+    try:
+        MathTextParser("path").parse(text)
+    except ValueError:
+        text = text.replace("$", r"\$")
+    lines = [""]
+    for word in re.findall(r"(?:\$[^$]*\$|\S)+", text):  # formulas in one piece
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > most:
+            lines.append("")
+        lines[-1] += (" " if lines[-1] else "") + word
+    return lines
+
+
 def label(text, unit):
     return f"{text} ({unit})" if unit else text
 
@@ -119,19 +139,30 @@ def arrest_time(series, part=0.01):
     return float(series["time"][moving[-1]])
 
 
+class Profile(NamedTuple):
+    """The outline of a heap: heights over x [n], and of each tracer its part
+    of them."""
+    time: float
+    x: np.ndarray
+    height: np.ndarray
+    layers: dict
+
+
 def read_profiles(directory):
-    """[(time, x, height)] in order of time. In 3D the row of columns along x
-    that holds the highest one."""
+    """[Profile] in order of time. In 3D the row of columns along x that holds
+    the highest one."""
     table = read_table(pathlib.Path(directory) / "profile.csv")
+    names = [n for n in table if n not in ("time", "x", "y", "height")]
     profiles = []
     for time in np.unique(table["time"]):
         here = table["time"] == time
         if "y" in table:
             peak = np.argmax(np.where(here, table["height"], -1))
             here &= table["y"] == table["y"][peak]
-        x, height = table["x"][here], table["height"][here]
-        order = np.argsort(x)
-        profiles.append((time, x[order], height[order]))
+        order = np.argsort(table["x"][here])
+        x, height, *layers = (table[n][here][order]
+                              for n in ("x", "height", *names))
+        profiles.append(Profile(time, x, height, dict(zip(names, layers))))
     return profiles
 
 
@@ -263,13 +294,20 @@ class Snapshot:
         cut = (self.low[:, 1] <= y) & (y < self.high[:, 1])
         flat = Snapshot.__new__(Snapshot)
         flat.__dict__.update(self.__dict__)
-        flat.dimension = 2
+        flat.dimension, flat.cut = 2, y
         flat.low, flat.high = self.low[cut][:, ::2], self.high[cut][:, ::2]
         flat.level = self.level[cut]
         flat.fields = {n: v[cut] for n, v in self.fields.items()}
         if VELOCITY in flat.fields:
             flat.fields[VELOCITY] = flat.fields[VELOCITY][:, [0, 2, 1]]
         return flat
+
+    def grains(self):
+        """The fraction of grains, 1 in a run without gas."""
+        return self.fields.get(FRACTION, np.ones(len(self.low)))
+
+    def has_grains(self):
+        return bool(self.grains().any())
 
     def box_of_grains(self, part=0.999):
         """[x0, x1, z0, z1] of all but the outermost grains."""

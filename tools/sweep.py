@@ -355,7 +355,7 @@ def plot_sweep(path, name, x, runs, fits, place, log_log):
 def draw_outlines(ax, profiles, unit):
     """The outlines of one run; returns how far to the right they go."""
     right = 0.0
-    for k, (time, x, height) in enumerate(profiles):
+    for k, (time, x, height, _) in enumerate(profiles):
         shade = plt.get_cmap("copper_r")((k + 1) / (len(profiles) + 1))
         half = 0.5 * (x[1] - x[0])  # up to the side of the column
         ax.plot(np.r_[x[0] - half, x], np.r_[height[0], height], color=shade,
@@ -371,9 +371,9 @@ def plot_panels(path, name, runs):
     in common if the heaps are alike in size."""
     units = units_of(runs)
     chosen = [run_data.choose(run_data.without_repeat(
-        [p for p in run_data.read_profiles(run.directory) if len(p[1]) > 1]),
+        [p for p in run_data.read_profiles(run.directory) if len(p.x) > 1]),
         5) for run in runs]
-    tops = [max(p[2].max() for p in profiles) for profiles in chosen
+    tops = [max(p.height.max() for p in profiles) for profiles in chosen
             if profiles]
     alike = bool(not tops or max(tops) < 3 * min(tops))
     fig, axes = plt.subplots(len(runs), 1, sharex=alike, sharey=alike,

@@ -74,11 +74,28 @@ if ls replaced/*.png replaced/*.gif 2> /dev/null; then exit 1; fi
 # A strip of a layer is too narrow for a title, and its surface is level.
 timeout 120 "$build/talus" run "$root/examples/bagnold.lua" stop=1 trees=4 \
   -o layer --quiet
-timeout 120 "$build/talus" plot layer > output
-if grep -q outlines output; then
+timeout 120 "$build/talus" plot layer > output 2>&1
+if grep -q "^layer/outlines" output; then
   echo "a level surface was drawn as a heap"
   exit 1
 fi
+# Without grains there is little to draw, and two layers have their legend.
+sed 's/return math.min(width - x, height - y)/return -1/
+  s/  tracers = {/&\n    floor = function(x, y) return 1 - y end,/' \
+  "$root/examples/column.lua" > empty.lua
+timeout 120 "$build/talus" run empty.lua level=5 stop=0.1 -o empty --quiet \
+  2> output
+timeout 120 "$build/talus" plot empty > output 2>&1
+grep -q "no history.png, as there are no grains" output || {
+  echo "an empty box:"
+  cat output
+  exit 1
+}
+grep -q "^empty/fields-final.png$" output || { echo "no picture"; exit 1; }
+head -n 1 empty/profile.csv | grep -qx "time,x,height,core,floor" || {
+  echo "the tracers are not in profile.csv"
+  exit 1
+}
 "$python" -c '
 import matplotlib.image
 assert matplotlib.image.imread("layer/fields-final.png").shape[1] > 700'
@@ -89,7 +106,7 @@ fi
 
 # Closures: a picture, and beside it the curves as they were printed.
 "$python" "$root/tools/plot_closure.py" mu_i "lee_huang p=1000" -o curves.png \
-  --talus "$build/talus"
+  --talus "$build/talus" > output
 [ "$(wc -c < curves.png)" -gt 5000 ] || { echo "curves.png is small"; exit 1; }
 for curve in "0 mu_i" "1 lee_huang p=1000"; do
   number=${curve%% *}
@@ -127,6 +144,16 @@ assert run_data.symbol("mu_s") == r"$\mu_{s}$"
 assert run_data.symbol("delta_mu") == r"$\Delta\mu$"
 assert run_data.symbol("I0") == "$I_{0}$"
 assert run_data.symbol("level") == "level"
+lines = run_data.title_lines({"title": "one two  $a = 3$ four"}, ".", 9)
+assert lines == ["one two", "$a = 3$", "four"], lines
+assert run_data.title_lines({"title": r"5 $ or $\no$"}, ".", 99) == [
+    r"5 \$ or \$\no\$"]
+assert run_data.title_lines({}, "/some/run.out", 99) == ["run.out"]
+column = run_data.read_profiles("column")
+assert [p.time for p in column] == sorted(p.time for p in column)
+core = column[0].layers["core"]
+assert list(column[0].layers) == ["core"] and 0 < core.max() < 6, core
+assert (core <= column[0].height).all()
 profiles = [(t, x, h) for t in (1, 5.7, 5.8)]
 assert len(run_data.without_repeat(profiles)) == 2
 assert len(run_data.without_repeat(profiles[:2])) == 2
