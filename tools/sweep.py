@@ -45,7 +45,7 @@ import power_law
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import (FuncFormatter, LogLocator, MaxNLocator,
-                               NullFormatter)
+                               NullFormatter, NullLocator)
 
 COLOUR, GREY, BLUE = "#8a5a22", "#777777", "#24639c"
 STOPPED = 5  # exit status of a run that ended before its time
@@ -305,6 +305,7 @@ def set_log_axis(axis, values):
     decades = np.log10(high / low) if low > 0 else 0
     if decades < 0.7:
         axis.set_major_locator(MaxNLocator(5))
+        axis.set_minor_locator(NullLocator())
     else:
         subs = (1, 2, 5) if decades < 3 else (1,)
         axis.set_major_locator(LogLocator(subs=subs, numticks=20))

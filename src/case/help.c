@@ -33,7 +33,10 @@ static const char INTRODUCTION[] =
     "consistent set\n"
     "will do. A thing with options is { \"name\", option = value }; without "
     "options the\n"
-    "name is enough. Functions of position take x, y and, in 3D, z.\n";
+    "name is enough. Functions of position take x, y and, in 3D, z. The value "
+    "that\n"
+    "param() gives may be a number, a text, true or false, or a list of "
+    "numbers.\n";
 
 /* `text` in lines of WIDTH, each begun by `indent` blanks. */
 static void print_wrapped(FILE *f, int indent, const char *text) {
@@ -125,7 +128,9 @@ static void print_closure_key(FILE *f, const struct rheology_key *key) {
 static void print_closures(FILE *f) {
   const struct rheology_model *model;
   const struct rheology_key *key;
-  fprintf(f, "\nClosures (talus rheology NAME prints the curve of one)\n");
+  fprintf(f,
+          "\nClosures (talus rheology lists them with ranges and defaults, "
+          "talus rheology\nNAME prints the curve of one)\n");
   for (int i = 0; (model = rheology_get(i)) != NULL; i++) {
     fprintf(f, "  %-12s %s\n", model->name, model->title);
     for (int k = 0; k < model->nkeys; k++)

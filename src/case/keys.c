@@ -24,6 +24,10 @@ static const char *const PHASES[] = {"both", "grains", "gas", NULL};
 /* enum permeability */
 static const char *const PERMEABILITIES[] = {"auto", "no", "yes", NULL};
 
+_Static_assert(CASE_MAX_LEVEL_3D == 16 && PARAMS_MAX_TRACERS == 8 &&
+                   PARAMS_MAX_CRITERIA == 8 && PARAMS_MAX_TIMES == 256,
+               "the help of keys says so");
+
 /* Units are SI; any consistent set will do. clang-format would take three
  * times the lines. */
 /* clang-format off */
@@ -42,7 +46,7 @@ static const struct key KEYS[] = {
      .unit = "", .offset = AT(trees), .help = "trees along each axis"},
     {"domain.level", KEY_LEVEL, .low = 1, .high = CASE_MAX_LEVEL_2D, NEEDED,
      .unit = "", .offset = AT(level_max),
-     .help = "finest grid: size/2^level"},
+     .help = "finest grid: size/2^level; at most 16 in 3D"},
     {"domain.level_min", KEY_LEVEL, SOME_LEVEL, DEFAULT "1", .unit = "",
      .offset = AT(level_min), .help = "coarsest grid: size/2^level_min"},
 
@@ -75,7 +79,7 @@ static const struct key KEYS[] = {
     {"velocity", KEY_VELOCITY, ANY, DEFAULT "0", .unit = "m/s",
      .offset = AT(velocity), .help = "at t = 0, of grains and gas"},
     {"tracers", KEY_TRACERS, OPTIONAL, .unit = "m", .offset = AT(tracer),
-     .help = "volumes to be followed, name = shape at t = 0"},
+     .help = "volumes to be followed, name = shape at t = 0; at most 8"},
 
     {"boundary", KEY_SECTION, NEEDED, .help = "what holds on each side"},
     {"boundary.left", KEY_SIDE, NEEDED, .unit = "", .help = "lower x"},
@@ -93,8 +97,8 @@ static const struct key KEYS[] = {
      .help = "mean pressure of the box, needed when no boundary sets any"},
 
     {"adapt", KEY_CRITERIA, OPTIONAL, .unit = "",
-     .help = "list of criteria, the finest wins; without it the grid is "
-             "uniform"},
+     .help = "list of at most 8 criteria, the finest wins; without it the "
+             "grid is uniform"},
     {"adapt.every", KEY_INTEGER, .low = 0, .high = 1e6, DEFAULT "0",
      .unit = "steps", .offset = AT(adapt_every),
      .help = "steps between adaptations at most; 0: when the flow needs it"},
@@ -142,7 +146,7 @@ static const struct key KEYS[] = {
      .offset = AT(length_scale),
      .help = "a length of the problem, for reading and pictures only"},
     {"output.profile_times", KEY_TIMES, .low = 0, .high = INFINITY, OPTIONAL,
-     .unit = "s", .help = "times of outlines in profile.csv"},
+     .unit = "s", .help = "times of outlines in profile.csv, at most 256"},
     {"output.snapshot_every", KEY_NUMBER, NOT_NEGATIVE, DEFAULT "0",
      .unit = "s", .offset = AT(snapshot_every),
      .help = "time between snapshots; 0: the first and the last only"},

@@ -44,9 +44,10 @@ static int judge(const char *path, const struct csv_expected *expected,
 
 static _Noreturn void refuse_header(const char *path) {
   USER_ERROR(
-      "'%s' has other columns than this version of talus writes, so its rows "
-      "cannot be continued; go on with the version that wrote it, or copy "
-      "checkpoint.h5 alone into a new directory and --restart there",
+      "'%s' has other columns than this run writes, for other tracers or "
+      "another version of talus, so its rows cannot be continued; take the "
+      "tracers and the version of the first run, or copy checkpoint.h5 alone "
+      "into a new directory and --restart there",
       path);
 }
 
