@@ -104,7 +104,9 @@ def main():
     try:
         curves = [read_curve(options.talus, argument.split())
                   for argument in options.curves]
-    except (OSError, subprocess.CalledProcessError) as error:
+    except subprocess.CalledProcessError as error:
+        sys.exit(error.returncode)  # talus has said why
+    except OSError as error:
         sys.exit(f"plot_closure: {error}")
     names = ["mu"]
     if any(np.isfinite(curve["nu"]).any() for curve in curves):

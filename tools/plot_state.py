@@ -96,11 +96,13 @@ def make_figure(snapshots, times, units, field):
                              figsize=(7, 0.8 + rows * (0.3 + 6.2 / aspect)),
                              layout="constrained")
     norm, cmap = colours_of(snapshots, field)
+    words = "" if field == "state" else ": " + run_data.label(
+        snapshots[0].titles[field], units.field(snapshots[0].units[field]))
     for ax, snapshot, time in zip(axes[:, 0], snapshots, times):
         draw(ax, snapshot, window, field, norm, cmap)
         ax.set_xlim(window[:2])
         ax.set_ylim(window[2:])
-        ax.set_title(f"$t$ = {time}", loc="left", fontsize=9)
+        ax.set_title(f"$t$ = {time}{words}", loc="left", fontsize=9)
         ax.set_ylabel(run_data.label("height", units.length))
     axes[-1, 0].set_xlabel(run_data.label("$x$", units.length))
     if field == "state":
@@ -111,10 +113,7 @@ def make_figure(snapshots, times, units, field):
                    loc="lower center", ncol=len(STATES), fontsize=8,
                    frameon=False)
     else:
-        fig.colorbar(plt.cm.ScalarMappable(norm, cmap), ax=axes[:, 0].tolist(),
-                     label=run_data.label(snapshots[0].titles[field],
-                                          units.field(
-                                              snapshots[0].units[field])))
+        fig.colorbar(plt.cm.ScalarMappable(norm, cmap), ax=axes[:, 0].tolist())
     return fig
 
 
