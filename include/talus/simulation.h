@@ -27,7 +27,7 @@ struct skin;
 /* Energies of the grains, per unit width in 2D, in J/m (J in 3D). */
 struct energy {
   double kinetic, potential;
-  double dissipated; /* viscous work since t = 0 */
+  double dissipated; /* taken by viscosity since t = 0 */
   double initial;    /* kinetic + potential at t = 0 */
   double changed;    /* added by restarts with other conditions since then */
 };
