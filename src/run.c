@@ -123,6 +123,7 @@ static double wall_seconds(const struct run *run) {
 static void write_row(struct run *run, const struct diagnostics *d) {
   const struct simulation *sim = run->sim;
   const struct energy *energy = &sim->energy;
+  const double given = d->gas - energy->gas + energy->gas_dissipated;
   struct series_row row = {.step = sim->step,
                            .time = sim->time,
                            .dt = sim->dt,
@@ -141,13 +142,14 @@ static void write_row(struct run *run, const struct diagnostics *d) {
                            .droplet_volume = d->droplets.volume,
                            .numerical = energy->initial + energy->changed -
                                         d->kinetic - d->potential -
-                                        energy->dissipated,
+                                        energy->dissipated - given,
                            .divergence_volume = sim->divergence_volume,
                            .pressure_residual = sim->pressure.residual_after,
                            .viscous_residual = sim->viscous.residual_after,
                            .mean_shear_rate = d->shear_rate,
                            .repeat_change = sim->repeat_change,
-                           .work_of_changes = energy->changed};
+                           .work_of_changes = energy->changed,
+                           .given_to_gas = given};
   series_write(run->series, &row);
 }
 
@@ -176,6 +178,7 @@ static void write_tables(struct run *run) {
   sim->energy.potential = d.potential;
   if (sim->step == 0) {
     sim->energy.initial = d.kinetic + d.potential;
+    sim->energy.gas = d.gas;
     check_grains(run, d.volume);
   }
   if (row) write_row(run, &d);

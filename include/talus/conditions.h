@@ -7,10 +7,11 @@
  * is asked: a checkpoint keeps three sums over it, and a restart finds them
  * anew under its own conditions.
  *   energy  kinetic + potential of the grains at `time`, J/m (J in 3D)
+ *   gas     the same of the gas
  *   force   sum (g_x^2 + g_y^2 + g_z^2)^(1/2) V, g: gravity less pressure
  *           gradient over density of the stored p, m^(DIM+1)/s^2
  *   inflow  sum |u_f| A over the faces whose velocity is given, m^DIM/s
- * A jump of the energy is not of the scheme: `energy.changed` takes it. With
+ * A jump of an energy is not of the scheme: `energy` books it. With
  * another force or inflow the flow starts anew from c and u: c, which lags half
  * a step, is brought to `time` with the u_f it has, the boundaries give u_f
  * what is now theirs, pressure and g become those of rest (step_start), and dt
@@ -22,7 +23,7 @@
 struct simulation;
 
 struct conditions {
-  double energy, force, inflow;
+  double energy, gas, force, inflow;
 };
 
 /* Measure the sums; of the state nothing changes. Collective. */

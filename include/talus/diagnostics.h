@@ -5,6 +5,7 @@
  *   kinetic    sum 1/2 rho_grains c |u|^2 V     J/m (2D), J (3D)
  *   potential  -sum rho_grains c V g.x          x: centre of the grains in a
  *              cell, for cut cells the centroid below their plane
+ *   gas        kinetic and potential energy of the rest of the box
  *   max_speed  |u| of cells with c > 1/2, m/s
  *   shear_rate mean over the grains, 1/s (closure_fields.h)
  *   layer      int min(tracer, c) dz of the heap per column, m
@@ -24,7 +25,7 @@ struct simulation;
 
 struct diagnostics {
   double volume;
-  double kinetic, potential;
+  double kinetic, potential, gas;
   double max_speed, shear_rate;
   double front, height;     /* of the outline, m */
   struct droplets droplets; /* not in the outline */
@@ -33,6 +34,8 @@ struct diagnostics {
   double *layer[PARAMS_MAX_TRACERS]; /* as outline.height, owned; or NULL */
 };
 
+/* Energy of the gas alone. Collective. */
+double diagnostics_gas(const struct simulation *sim);
 /* Measure the state, which is left as it is but for scratch. Collective; the
  * same on all ranks. Free with diagnostics_free. */
 void diagnostics_measure(const struct simulation *sim,

@@ -21,7 +21,7 @@ struct series_row {
   int64_t droplets;      /* sets of grains apart from the heap */
   double droplet_volume; /* m^DIM */
   double numerical; /* energy lost to the scheme: initial + work_of_changes -
-                       kinetic - potential - dissipated */
+                       kinetic - potential - dissipated - given_to_gas */
   double divergence_volume; /* sum over steps of sum c div u dt V, m^DIM */
   double pressure_residual, viscous_residual; /* in units of the tolerance */
   double mean_shear_rate; /* of the grains, 1/s: tells when they come to rest */
@@ -29,6 +29,8 @@ struct series_row {
                              0 without */
   double work_of_changes; /* energy that restarts with another gravity or
                              density have added */
+  double given_to_gas;    /* energy of the gas more than at first, and what
+                             viscosity has taken from it */
 };
 
 struct series;

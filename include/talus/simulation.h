@@ -27,9 +27,12 @@ struct skin;
 /* Energies of the grains, per unit width in 2D, in J/m (J in 3D). */
 struct energy {
   double kinetic, potential;
-  double dissipated; /* taken by viscosity since t = 0 */
+  double dissipated; /* by viscosity since t = 0 (viscous_work.h) */
   double initial;    /* kinetic + potential at t = 0 */
   double changed;    /* added by restarts with other conditions since then */
+  double gas;        /* kinetic + potential of the gas at t = 0, and what such
+                      * restarts have added */
+  double gas_dissipated; /* as `dissipated` */
 };
 
 /* Stages of a step (step.c), for --timing. */

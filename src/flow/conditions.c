@@ -15,12 +15,14 @@
  * terms depends on the number of ranks. */
 #define SAME 1e-10
 
-static double measure_energy(struct simulation *sim) {
+static void measure_energy(struct simulation *sim,
+                           struct conditions *conditions) {
   double kinetic, potential;
   fractions_synchronise(sim);
   diagnostics_energy(sim, &kinetic, &potential);
+  conditions->gas = diagnostics_gas(sim);
   fractions_desynchronise(sim);
-  return kinetic + potential;
+  conditions->energy = kinetic + potential;
 }
 
 static double measure_force(struct simulation *sim) {
@@ -55,7 +57,7 @@ static double boundary_velocity(struct simulation *sim, double *u_f) {
 }
 
 void conditions_measure(struct simulation *sim, struct conditions *conditions) {
-  conditions->energy = measure_energy(sim);
+  measure_energy(sim, conditions);
   conditions->force = measure_force(sim);
   conditions->inflow = boundary_velocity(sim, sim->face[1]->v);
 }
@@ -98,6 +100,9 @@ void conditions_renew(struct simulation *sim) {
         "restart with other conditions: energy changes from %.10g to %.10g",
         before->energy, now.energy);
     sim->energy.changed += jump;
+  }
+  if (fabs(now.gas - before->gas) > SAME * fabs(before->gas)) {
+    sim->energy.gas += now.gas - before->gas;
   }
   if (fabs(now.force - before->force) > SAME * (before->force + weight) ||
       fabs(now.inflow - before->inflow) > SAME * before->inflow) {

@@ -72,23 +72,38 @@ static double leaf_potential(const struct mesh *mesh, const double *c,
 static void measure_sums(const struct simulation *sim, const double *c,
                          struct diagnostics *diagnostics) {
   const struct mesh *mesh = sim->mesh;
-  const double rho = sim->params->grains.density;
+  double density[2];
   struct sum volume = {0, 0}, kinetic = {0, 0}, potential = {0, 0};
+  struct sum gas = {0, 0};
   double fastest = 0;
+  simulation_densities(sim, density);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double u2 = 0, whole = 0, all = mesh_volume(mesh, i), v = c[i] * all;
+    for (int d = 0; d < DIM; d++) {
+      u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
+      whole += sim->params->gravity[d] * mesh->x[i][d];
+    }
+    const double grains =
+        c[i] == 0 ? 0 : v * leaf_potential(mesh, c, sim->params->gravity, i);
+    sum_add(&gas, density[1] * (0.5 * u2 * (all - v) - all * whole + grains));
     if (c[i] == 0) continue;
-    double u2 = 0, v = c[i] * mesh_volume(mesh, i);
-    for (int d = 0; d < DIM; d++) u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
     sum_add(&volume, v);
-    sum_add(&kinetic, 0.5 * rho * u2 * v);
-    sum_add(&potential,
-            -rho * v * leaf_potential(mesh, c, sim->params->gravity, i));
+    sum_add(&kinetic, 0.5 * density[0] * u2 * v);
+    sum_add(&potential, -density[0] * grains);
     if (c[i] > 0.5) fastest = max2(fastest, u2);
   }
   diagnostics->volume = sum_total(mesh, volume);
   diagnostics->kinetic = sum_total(mesh, kinetic);
   diagnostics->potential = sum_total(mesh, potential);
+  diagnostics->gas = sum_total(mesh, gas);
   diagnostics->max_speed = sqrt(mesh_max(mesh, fastest));
+}
+
+double diagnostics_gas(const struct simulation *sim) {
+  struct diagnostics diagnostics;
+  field_fill(sim->mesh, sim->c);
+  measure_sums(sim, sim->c->v, &diagnostics);
+  return diagnostics.gas;
 }
 
 void diagnostics_energy(const struct simulation *sim, double *kinetic,

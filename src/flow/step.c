@@ -31,6 +31,7 @@
 #include "talus/skin.h"
 #include "talus/time_step.h"
 #include "talus/viscous.h"
+#include "talus/viscous_work.h"
 #include "talus/vof.h"
 
 /* A stalled solve passes within this factor of its tolerance, or below the
@@ -337,28 +338,6 @@ static void add_solve(struct solve_stats *last,
   last->iterations = iterations;
 }
 
-/* Book the work of viscosity on the grains as the solve has done it, its force
- * times the mean of the velocities before and after all forces. What eta and
- * strain rate say at one time differs from it by what changes within a step,
- * beside a moving surface most, and grows on finer grids: by -0.05 and -0.18 of
- * the 19.6 of `column` at levels 10 and 11, which no force has taken. */
-static void add_viscous_work(struct simulation *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
-  const double *drag = sim->drag ? sim->drag->v : NULL;
-  double work = 0;
-  for (int e = 0; e < DIM; e++) {
-    const double *g = sim->g[e]->v, *v = sim->viscous_g[e]->v;
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      const double u = sim->u[e]->v[i];
-      const double friction = drag ? drag[i] * u / sim->rho->v[i] : 0;
-      const double mean = u - 0.5 * dt * (g[i] + v[i] - friction);
-      work += sim->c->v[i] * v[i] * mean * mesh_volume(mesh, i);
-    }
-  }
-  sim->energy.dissipated -=
-      dt * sim->params->grains.density * mesh_sum(mesh, work);
-}
-
 static void add_wall_work(struct simulation *sim, double dt) {
   double *u[DIM];
   if (!sim->drag) return;
@@ -513,7 +492,7 @@ static void advance_state(struct simulation *sim, double dt, double rate) {
     if (k > 0) add_solve(&sim->pressure, &pressure);
     measure_repetition(sim, k), lap(sim, STAGE_OTHER);
   }
-  add_viscous_work(sim, dt);
+  viscous_work_add(sim, dt);
   add_wall_work(sim, dt);
 }
 
@@ -522,7 +501,7 @@ static void advance_state(struct simulation *sim, double dt, double rate) {
 static void set_back(struct simulation *sim, const struct simulation *before) {
   fields_restore(&sim->fields, sim->mesh);
   sim->planes_hold = false;
-  sim->energy.dissipated = before->energy.dissipated;
+  sim->energy = before->energy;
   sim->divergence_volume = before->divergence_volume;
   sim->percolation = before->percolation;
   sim->travel = before->travel;

@@ -13,7 +13,8 @@ static const char header[] =
     "step,time,dt,cells,front,height,volume,kinetic,potential,dissipated,"
     "max_speed,pressure_iterations,viscous_iterations,wall_seconds,droplets,"
     "droplet_volume,numerical,divergence_volume,pressure_residual,"
-    "viscous_residual,mean_shear_rate,repeat_change,work_of_changes";
+    "viscous_residual,mean_shear_rate,repeat_change,work_of_changes,"
+    "given_to_gas";
 
 void series_check(const char *directory, const struct csv_mark *mark,
                   int64_t last_step, int every) {
@@ -60,6 +61,7 @@ void series_write(struct series *series, const struct series_row *row) {
   csv_short(csv, row->mean_shear_rate);
   csv_short(csv, row->repeat_change);
   csv_short(csv, row->work_of_changes);
+  csv_short(csv, row->given_to_gas);
   csv_end_row(csv);
 }
 
