@@ -141,7 +141,7 @@ valgrind: ## memory check of a small case
 	$(AGAIN) MODE=debug BUILD=$(BUILD)/debug all
 	valgrind -q --error-exitcode=1 $(VALGRIND_SUPPRESS:%=--suppressions=%) \
 	  $(BUILD)/debug/talus2d run examples/column.lua level=5 \
-	  --max-steps 5 --quiet -o $(BUILD)/debug/column
+	  --max-steps 5 --quiet -o $(BUILD)/debug/column; test $$? -eq 5
 coverage: ## lines of each source that unit and mesh tests reach
 	$(AGAIN) MODE=coverage BUILD=$(BUILD)/coverage all tests
 	@tests/run.sh $(BUILD)/coverage unit mesh

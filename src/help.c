@@ -41,9 +41,20 @@ static const char RUN_HELP[] =
     "  --quiet            say nothing but warnings and errors\n"
     "  --timing           say at the end where the time went\n"
     "\n"
-    "Ctrl-C ends the step, writes a checkpoint and stops; the same command\n"
-    "with --restart goes on. Exit status: 0 done, 2 error of the user,\n"
-    "3 numerical failure, 4 memory, disk or MPI.\n";
+    "Ctrl-C, SIGTERM and SIGHUP end the step, write a checkpoint and stop; "
+    "the\n"
+    "same command with --restart goes on. Before the first step they end the\n"
+    "program at once. Exit status:\n"
+    "  0  the run is finished\n"
+    "  2  the case or the command line is wrong\n"
+    "  3  numerical failure\n"
+    "  4  memory, disk or MPI\n"
+    "  5  stopped before its end, by a signal, --max-steps or --max-walltime\n"
+    "mpirun hands these on (with words of its own that a process ended so), "
+    "but\n"
+    "returns 1 when the signal went to mpirun itself; `talus info DIR` says "
+    "how\n"
+    "the run ended.\n";
 
 static const char CHECK_HELP[] =
     "talus check CASE.lua [name=value ...]\n"
@@ -57,8 +68,10 @@ static const char CHECK_HELP[] =
 static const char INFO_HELP[] =
     "talus info DIR|FILE\n"
     "\n"
-    "Of the directory of a run: the last row of series.csv, parameters and\n"
-    "files; of a .csv its columns and last row; of a snapshot or checkpoint\n"
+    "Of the directory of a run: the last row of series.csv, whether the run "
+    "is\n"
+    "finished, stopped (and by what) or failed, parameters and files; of a "
+    ".csv its columns and last row; of a snapshot or checkpoint\n"
     "(.h5) its time, step and cells, and the fields of a snapshot.\n"
     "`talus help output` says what they mean.\n";
 

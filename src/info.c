@@ -11,6 +11,7 @@
 #include "talus/csv_row.h"
 #include "talus/error.h"
 #include "talus/hdf5_file.h"
+#include "talus/run_end.h"
 #include "talus/seal.h"
 
 enum { LENGTH = 4096 };
@@ -171,6 +172,7 @@ static int info_directory(const char *directory) {
          table.nrows > 0 ? ", the last" : "");
   print_last(&table);
   free_table(&table);
+  run_end_print(directory);
   snprintf(path, sizeof path, "%s/parameters.csv", directory);
   print_parameters(path);
   print_files(directory);

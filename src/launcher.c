@@ -12,6 +12,7 @@
 #include "talus/case.h"
 #include "talus/command_line.h"
 #include "talus/error.h"
+#include "talus/signals.h"
 
 static int dimension_of(int argc, char *argv[]) {
   if (argc < 2) return 2;
@@ -25,7 +26,7 @@ static int dimension_of(int argc, char *argv[]) {
 int main(int argc, char *argv[]) {
   enum { LENGTH = 4096 };
   char directory[LENGTH], program[LENGTH + 16];
-  (void)argc;
+  if (argc > 1 && strcmp(argv[1], "run") == 0) signals_catch();
   const char *name = dimension_of(argc, argv) == 3 ? "talus3d" : "talus2d";
   if (command_own_directory(directory, LENGTH)) {
     snprintf(program, sizeof program, "%s/%s", directory, name);
@@ -34,8 +35,10 @@ int main(int argc, char *argv[]) {
     snprintf(program, sizeof program, "%s", name);
     execvp(program, argv);
   }
-  fprintf(stderr,
-          "talus: error: cannot start %s: %s; type `make` to build it\n",
-          program, strerror(errno));
+  const int error = errno;
+  if (base_take_rank() == 0)
+    fprintf(stderr,
+            "talus: error: cannot start %s: %s; type `make` to build it\n",
+            program, strerror(error));
   return EXIT_SYSTEM;
 }

@@ -13,6 +13,7 @@
 #include "talus/memory.h"
 #include "talus/rheology.h"
 #include "talus/run.h"
+#include "talus/signals.h"
 #include "talus/spelling.h"
 
 _Static_assert((int)FOREST_MAX_LEVEL ==
@@ -140,27 +141,38 @@ static const struct command {
 
 enum { NCOMMANDS = sizeof COMMANDS / sizeof *COMMANDS };
 
+/* NULL if there is no such command. */
 static const struct command *find_command(const char *word) {
+  for (int i = 0; i < NCOMMANDS; i++)
+    if (strcmp(word, COMMANDS[i].name) == 0) return &COMMANDS[i];
+  return NULL;
+}
+
+static _Noreturn void refuse_command(const char *word) {
   const char *names[NCOMMANDS];
-  for (int i = 0; i < NCOMMANDS; i++) {
-    names[i] = COMMANDS[i].name;
-    if (strcmp(word, names[i]) == 0) return &COMMANDS[i];
-  }
+  for (int i = 0; i < NCOMMANDS; i++) names[i] = COMMANDS[i].name;
   const char *nearest = spelling_nearest(word, NCOMMANDS, names);
   USER_ERROR("unknown command %s%s%s; `talus help` lists the commands", word,
              nearest ? "; did you mean " : "", nearest ? nearest : "");
 }
 
 int main(int argc, char *argv[]) {
+  const struct command *command = argc > 1 ? find_command(argv[1]) : NULL;
+  /* the script behind plot has options of its own */
+  const bool help = command != NULL && command->run != command_plot &&
+                    command_asks_help(argc - 2, argv + 2);
+  const bool parallel = command != NULL && command->parallel && !help;
+  /* What needs no MPI is done once. The others end well: mpirun would kill the
+   * first, before it has spoken, at the sight of a status. */
+  if (base_take_rank() != 0 && !parallel) return EXIT_DONE;
   if (argc < 2) {
     command_usage(stderr);
     return EXIT_USER;
   }
-  const struct command *command = find_command(argv[1]);
+  if (command == NULL) refuse_command(argv[1]);
   rheology_begin();
-  /* the script behind plot has options of its own */
-  if (command->run != command_plot && command_asks_help(argc - 2, argv + 2))
-    return command_help(1, &argv[1]);
+  if (help) return command_help(1, &argv[1]);
+  if (command->run == command_run) signals_catch();
   if (command->parallel) base_begin(&argc, &argv);
   int status = command->run(argc - 2, argv + 2);
   if (command->parallel) base_end();

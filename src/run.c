@@ -7,7 +7,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
 #include <string.h>
 #include <time.h>
 
@@ -29,12 +28,10 @@
 #include "talus/progress.h"
 #include "talus/run_state.h"
 #include "talus/series.h"
+#include "talus/signals.h"
 #include "talus/simulation.h"
 #include "talus/snapshot.h"
 #include "talus/step.h"
-
-/* Set by the handler, the one thing a signal handler may do. */
-static volatile sig_atomic_t signal_caught;
 
 enum timed {
   TIME_START,
@@ -330,6 +327,7 @@ static struct run *run_new(const struct params *params,
                  ? run_state_read(run->checkpoint_path, params, &run->before)
                  : simulation_new(params);
   check_tables(run);
+  signals_remember();
   open_files(run);
   if (options->restart) conditions_renew(run->sim);
   run->first_step = run->sim->step;
@@ -394,12 +392,12 @@ static void say_end(const struct run *run, const char *why) {
   int64_t steps = sim->step - run->first_step;
   char line[512];
   snprintf(line, sizeof line,
-           "%s at step %" PRId64 ", time %.6g: %" PRId64
+           "%s%s at step %" PRId64 ", time %.6g: %" PRId64
            " steps in %.2f s (%.1f steps/s)",
-           why, sim->step, sim->time, steps, wall,
-           (double)steps / fmax(wall, 1e-9));
-  log_info("%s", line);
+           at_end(run) ? "" : "stopped by ", why, sim->step, sim->time, steps,
+           wall, (double)steps / fmax(wall, 1e-9));
   log_percolation(sim);
+  log_info("end: %s", line);
   progress_say(run->progress, "%s", line);
   if (at_end(run)) {
     progress_say(run->progress, "results are in %s", run->options->directory);
@@ -431,17 +429,6 @@ static void say_failure(const struct run *run) {
 
 /* The loop */
 
-static void catch_signal(int number) { signal_caught = number; }
-
-/* A second signal of the kind ends the program at once. */
-static void catch_signals(void) {
-  struct sigaction action = {.sa_handler = catch_signal};
-  action.sa_flags = (int)SA_RESETHAND | SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
-}
-
 /* What all ranks agree to do after a step. */
 struct verdict {
   int signal, out_of_time, checkpoint;
@@ -450,23 +437,22 @@ struct verdict {
 static struct verdict agree(const struct run *run) {
   double now = MPI_Wtime(), every = run->params->checkpoint_every;
   double most = run->options->max_walltime;
-  int mine[3] = {signal_caught, most > 0 && now - run->wall_begin >= most,
+  int mine[3] = {signals_caught(), most > 0 && now - run->wall_begin >= most,
                  every > 0 && now - run->wall_checkpoint >= every};
   int all[3];
   MPI_CHECK(MPI_Allreduce(mine, all, 3, MPI_INT, MPI_MAX, MPI_COMM_WORLD));
   return (struct verdict){all[0], all[1], all[2]};
 }
 
-/* Why to stop now; NULL: go on. */
+/* What stops the run now; NULL: it goes on. */
 static const char *reason_to_stop(const struct run *run,
                                   const struct verdict *verdict) {
   int64_t steps = run->sim->step - run->first_step;
   if (at_end(run)) return "done";
-  if (verdict->signal == SIGINT) return "stopped by SIGINT";
-  if (verdict->signal != 0) return "stopped by SIGTERM";
-  if (verdict->out_of_time) return "stopped by --max-walltime";
+  if (verdict->signal != 0) return signals_name(verdict->signal);
+  if (verdict->out_of_time) return "--max-walltime";
   if (run->options->max_steps >= 0 && steps >= run->options->max_steps)
-    return "stopped by --max-steps";
+    return "--max-steps";
   return NULL;
 }
 
@@ -492,7 +478,7 @@ static int run_loop(struct run *run) {
     if (fresh && (why != NULL || verdict.checkpoint)) write_checkpoint(run);
     if (why != NULL) {
       say_end(run, why);
-      return EXIT_DONE;
+      return at_end(run) ? EXIT_DONE : EXIT_STOPPED;
     }
     int status = advance(run);
     if (status != EXIT_DONE) {
@@ -507,8 +493,6 @@ static int run_loop(struct run *run) {
 }
 
 int run_case(const struct params *params, const struct run_options *options) {
-  signal_caught = 0;
-  catch_signals();
   struct run *run = run_new(params, options);
   if (!options->restart) write_output(run);
   int status = run_loop(run);

@@ -129,13 +129,19 @@ group_examples() {
   done
 }
 
+# A few steps on N ranks, which is a run stopped before its end: status 5.
+run_few_steps() {
+  timeout "$limit" mpirun --oversubscribe -n "$1" "$build/talus2d" run \
+    examples/column.lua level=6 --max-steps 20 --quiet -o "$build/column-$1"
+  local status=$?
+  [ "$status" -eq 5 ] && return 0
+  [ "$status" -eq 0 ] && return 1
+  return "$status"
+}
+
 group_small() {
   local n
-  for n in 1 2; do
-    run_one "column on $n" mpirun --oversubscribe -n "$n" "$build/talus2d" \
-      run examples/column.lua level=6 --max-steps 20 --quiet \
-      -o "$build/column-$n"
-  done
+  for n in 1 2; do run_one "column on $n" run_few_steps "$n"; done
 }
 
 for group in "$@"; do "group_$group"; done

@@ -72,8 +72,11 @@ def time_run(build, name):
     begin = time.monotonic()
     result = subprocess.run(
         [build / program, "run", *arguments.split(), "--timing", "-o",
-         directory], capture_output=True, text=True, check=True, cwd=ROOT,
+         directory], capture_output=True, text=True, cwd=ROOT,
         env=environment())
+    expected = 5 if "--max-steps" in arguments else 0  # stopped, finished
+    if result.returncode != expected:
+        sys.exit(f"{name}: exit status {result.returncode}\n{result.stderr}")
     row = {"seconds": time.monotonic() - begin}
     row["leaves"] = int(re.search(r": (\d+) cells on", result.stdout)[1])
     row["steps"] = int(re.search(r"(\d+) steps in", result.stdout)[1])

@@ -27,7 +27,8 @@ enum {
   EXIT_DONE = 0,      /* the run ended as asked */
   EXIT_USER = 2,      /* bad case file, command line or directory */
   EXIT_NUMERICAL = 3, /* the scheme gave up; the last checkpoint is good */
-  EXIT_SYSTEM = 4     /* memory, disk, MPI, or a bug */
+  EXIT_SYSTEM = 4,    /* memory, disk, MPI, or a bug */
+  EXIT_STOPPED = 5    /* a run stopped before its end, to be gone on with */
 };
 
 /*
@@ -38,6 +39,13 @@ enum {
  *               may be NULL
  */
 void base_begin(int *argc, char ***argv);
+
+/*
+ * Takes the rank from the environment that a launcher (mpirun, srun) sets, for
+ * what is said before MPI begins, or without it. Not collective.
+ * returns  the rank, 0 without a launcher
+ */
+int base_take_rank(void);
 
 /*
  * Turns the traps of debug builds on or off on this rank, around foreign code

@@ -28,9 +28,9 @@ struct run_options {
   void *context; /* of write_parameters, borrowed */
 };
 
-/* Runs a checked case. Collective. Returns an exit status (error.h): EXIT_DONE
- * also when stopped by a bound or by SIGINT/SIGTERM, after a checkpoint.
- *   params   borrowed, unchanged
+/* Runs a checked case, signals caught (signals.h). Collective. Returns an exit
+ * status (error.h): EXIT_STOPPED when a signal (signals.h) or a bound of the
+ * options ended it early, after a checkpoint. params   borrowed, unchanged
  *   options  borrowed */
 int run_case(const struct params *params, const struct run_options *options);
 

@@ -17,6 +17,18 @@ enum { MESSAGE_LENGTH = 4096 };
 static int rank = 0;
 static int size = 1;
 
+/* Where launchers tell a process its rank. */
+static const char *const LAUNCHER_RANK[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK",
+                                            "PMI_RANK", "SLURM_PROCID"};
+
+/* What a launcher says of the rank, NULL without one. */
+static const char *launcher_rank(void) {
+  const char *text = NULL;
+  for (size_t k = 0; k < sizeof LAUNCHER_RANK / sizeof *LAUNCHER_RANK; k++)
+    if (text == NULL) text = getenv(LAUNCHER_RANK[k]);
+  return text;
+}
+
 static bool mpi_runs(void) {
   int begun = 0, ended = 0;
   MPI_Initialized(&begun);
@@ -53,15 +65,17 @@ static void report_leaks(void) {
  * processes from, and waits for networks to answer, unless told that nobody
  * will ask for either. What the user has set stands. */
 static void expect_no_others(void) {
-  static const char *const launcher[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK",
-                                         "PMI_RANK", "SLURM_PROCID"};
-  for (size_t k = 0; k < sizeof launcher / sizeof *launcher; k++) {
-    if (getenv(launcher[k])) return;
-  }
+  if (launcher_rank() != NULL) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);
   /* one process may remove the scratch directory that another makes */
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+}
+
+int base_take_rank(void) {
+  const char *text = launcher_rank();
+  if (text != NULL && !mpi_runs()) rank = atoi(text);
+  return rank;
 }
 
 void base_begin(int *argc, char ***argv) {

@@ -37,6 +37,19 @@ must() {
   talus "$@" || complain "$*: exit status $?"
 }
 
+# stops WORDS...: a run that has to stop before its end
+stops() {
+  talus "$@"
+  local status=$?
+  [ $status -eq 5 ] || complain "$*: exit status $status, not 5"
+}
+
+# state DIR WORDS: `talus info` says how the run ended
+state() {
+  "$build/talus2d" info "$1" > output 2>&1
+  grep -q "^state: $2" output || complain "$1: the state is not '$2'"
+}
+
 # series DIR: series.csv without the column of wall-clock time
 series() {
   cut -d, -f1-13,15- "$1/series.csv"
@@ -73,16 +86,16 @@ refused() {
 # rows and a snapshot from later times, which a restart repeats.
 for n in 1 2; do
   must $n talus2d run $column -o whole-$n --quiet
-  must $n talus2d run $column -o parts-$n --quiet --max-steps 7
+  stops $n talus2d run $column -o parts-$n --quiet --max-steps 7
   cp parts-$n/checkpoint.h5 saved
-  must $n talus2d run $column -o parts-$n --quiet --restart --max-steps 8
+  stops $n talus2d run $column -o parts-$n --quiet --restart --max-steps 8
   cp saved parts-$n/checkpoint.h5
   must $n talus2d run $column -o parts-$n --quiet --restart
   same "column on $n" whole-$n parts-$n
 done
 for n in 1 3; do
   must $n talus3d run $box -o box-$n --quiet
-  must $n talus3d run $box -o pieces-$n --quiet --max-steps 3
+  stops $n talus3d run $box -o pieces-$n --quiet --max-steps 3
   must $n talus3d run $box -o pieces-$n --quiet --restart
   same "box on $n" box-$n pieces-$n
 done
@@ -99,7 +112,7 @@ same "nothing left to do" whole-1 again
 for pair in "1 2" "2 1" "1 3"; do
   set -- $pair
   rm -rf other
-  must "$1" talus2d run $column -o other --quiet --max-steps 7
+  stops "$1" talus2d run $column -o other --quiet --max-steps 7
   must "$2" talus2d run $column -o other --quiet --restart
   [ "$(last other 2)" = 2 ] || complain "$1 to $2 ranks: not at the end"
   awk -v a="$(last other 5)" -v b="$(last whole-1 5)" \
@@ -108,9 +121,11 @@ for pair in "1 2" "2 1" "1 3"; do
 done
 
 # A signal ends the step, and says how to go on.
-must 1 talus2d run $column stop=1e4 -o signal --max-walltime 0.2
+stops 1 talus2d run $column stop=1e4 -o signal --max-walltime 0.2
 grep -q -e --restart output || complain "no word of how to go on"
-for signal in INT TERM; do
+state signal 'stopped before its end.*by --max-walltime at step'
+state whole-1 'finished: done at step .*, time 2:'
+for signal in INT TERM HUP; do
   rm -rf signal
   "$build/talus2d" run $column stop=1e4 -o signal --max-walltime 30 \
     > output 2>&1 &
@@ -122,12 +137,37 @@ for signal in INT TERM; do
   kill -$signal $pid
   wait $pid
   status=$?
-  [ $status -eq 0 ] || complain "SIG$signal: exit status $status"
-  grep -q "SIG$signal" signal/run.log || complain "SIG$signal is not in run.log"
+  [ $status -eq 5 ] || complain "SIG$signal: exit status $status, not 5"
+  state signal "stopped before its end.*by SIG$signal at step"
   step=$(last signal 1)
-  must 1 talus2d run $column stop=1e4 -o signal --quiet --restart --max-steps 2
+  stops 1 talus2d run $column stop=1e4 -o signal --quiet --restart --max-steps 2
   [ "$(last signal 1)" -eq $((step + 2)) ] || complain "SIG$signal: went nowhere"
 done
+
+# While it starts there is nothing to save, and a signal ends it at once.
+for signal in INT TERM HUP; do
+  "$build/talus2d" run "$root/examples/column.lua" level=14 -o start \
+    > output 2>&1 &
+  pid=$!
+  sleep 1.5
+  kill -$signal $pid
+  wait $pid
+  status=$?
+  [ $status -eq 5 ] || complain "SIG$signal at the start: exit status $status"
+  grep -q "by SIG$signal before the first step" output ||
+    complain "SIG$signal at the start: no word of it"
+  [ -e start ] && complain "SIG$signal at the start: files are left"
+done
+
+# One that nohup has had ignored stays so.
+(
+  trap '' HUP
+  exec "$build/talus2d" run $column -o nohup > output 2>&1
+) &
+pid=$!
+while [ ! -e nohup/series.csv ] && kill -0 $pid 2> /dev/null; do sleep 0.02; done
+kill -HUP $pid 2> /dev/null
+wait $pid || complain "an ignored SIGHUP stops the run"
 
 # What does not fit is refused, and nothing is touched.
 cp -r parts-1 kept
@@ -181,7 +221,7 @@ must 1 talus2d run $column -o kept --quiet --restart
 
 # A disk that takes no more: status 4, the words of the system, and the last
 # checkpoint is whole. A limit on the size of files does for a full disk.
-must 1 talus2d run $column -o full --quiet --max-steps 3
+stops 1 talus2d run $column -o full --quiet --max-steps 3
 cp full/checkpoint.h5 saved
 (
   trap '' XFSZ
@@ -192,6 +232,7 @@ status=$?
 [ $status -eq 4 ] || complain "full disk: exit status $status, not 4"
 grep -q 'fatal: .*File too large' output || complain "full disk: no message"
 cmp -s saved full/checkpoint.h5 || complain "full disk: checkpoint is lost"
+state full 'failed'
 must 1 talus2d run $column -o full --quiet --restart
 same "after a full disk" whole-1 full
 

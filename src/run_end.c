@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/run_end.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool begins(const char *line, const char *word) {
+  return strncmp(line, word, strlen(word)) == 0;
+}
+
+/* What a line of the log makes of the state before it. */
+static enum run_end next_state(enum run_end state, const char *line) {
+  if (begins(line, "talus ") && strstr(line, "-dimensional, "))
+    return RUN_END_OPEN;
+  if (state != RUN_END_OPEN) return state;
+  if (begins(line, "error: ") || begins(line, "fatal: ")) return RUN_END_FAILED;
+  if (begins(line, "end: stopped ")) return RUN_END_STOPPED;
+  return begins(line, "end: ") ? RUN_END_FINISHED : state;
+}
+
+enum run_end run_end_read(const char *directory, char text[RUN_END_LENGTH]) {
+  char line[RUN_END_LENGTH];
+  enum run_end state = RUN_END_UNKNOWN;
+  text[0] = '\0';
+  snprintf(line, sizeof line, "%s/run.log", directory);
+  FILE *f = fopen(line, "r");
+  if (f == NULL) return state;
+  while (fgets(line, sizeof line, f) != NULL) {
+    line[strcspn(line, "\n")] = '\0';
+    enum run_end next = next_state(state, line);
+    if (next == RUN_END_OPEN) text[0] = '\0';
+    if (next != state && next != RUN_END_OPEN)
+      snprintf(text, RUN_END_LENGTH, "%s", strchr(line, ' ') + 1);
+    state = next;
+  }
+  fclose(f);
+  return state;
+}
+
+void run_end_print(const char *directory) {
+  static const char *const words[] = {
+      [RUN_END_UNKNOWN] = "unknown: no run.log of this version",
+      [RUN_END_OPEN] = "not ended: it still runs, or was killed",
+      [RUN_END_FINISHED] = "finished",
+      [RUN_END_STOPPED] = "stopped before its end, --restart goes on",
+      [RUN_END_FAILED] = "failed"};
+  char text[RUN_END_LENGTH];
+  enum run_end state = run_end_read(directory, text);
+  printf("state: %s%s%s\n", words[state], *text ? ": " : "", text);
+}
