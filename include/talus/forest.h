@@ -14,7 +14,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { FOREST_MAX_LEVEL = DIM == 2 ? 24 : 16 };
+enum {
+  FOREST_MAX_LEVEL = DIM == 2 ? 24 : 16,
+  FOREST_MAX_TREES = (1 << 15) - 1 /* a key has 15 bits for their numbers */
+};
 
 struct forest;
 

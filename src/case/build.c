@@ -144,8 +144,15 @@ static void check_grid(struct case_file *file) {
     read_fail_at(file, "domain.level_min",
                  "domain.level_min = %d is above domain.level = %d",
                  params->level_min, params->level_max);
-  double ncells = ldexp(1, params->dimension * params->level_max);
-  for (int d = 0; d < params->dimension; d++) ncells *= params->trees[d];
+  double ntrees = 1;
+  for (int d = 0; d < params->dimension; d++) ntrees *= params->trees[d];
+  if (ntrees > CASE_MAX_TREES)
+    read_fail_at(file, "domain.trees",
+                 "domain.trees: %.0f trees in all, %d are allowed: take fewer "
+                 "and larger ones, and a higher domain.level",
+                 ntrees, CASE_MAX_TREES);
+  const double ncells =
+      ntrees * ldexp(1, params->dimension * params->level_max);
   if (params->ncriteria == 0 && ncells > (double)params->max_cells)
     read_fail_at(file, "domain.level",
                  "a uniform grid of level %d has %.3g cells, and "

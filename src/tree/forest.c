@@ -106,10 +106,12 @@ static struct forest *forest_begin(MPI_Comm comm,
   MPI_CHECK(MPI_Comm_size(comm, &forest->nranks));
   forest->layout = *layout;
   for (int d = 0; d < DIM; d++) forest->curve.trees[d] = layout->trees[d];
+  int64_t ntrees = 1;
+  for (int d = 0; d < DIM; d++) ntrees *= layout->trees[d];
+  CHECK(ntrees <= FOREST_MAX_TREES, "brick of %lld trees, at most %d",
+        (long long)ntrees, FOREST_MAX_TREES);
   forest->connectivity = brick_new(layout);
   curve_begin(forest);
-  CHECK(forest->curve.ntrees < 1 << 15, "brick of %d trees, at most %d",
-        (int)forest->curve.ntrees, (1 << 15) - 1);
   forest->first_keys = MEM_NEW(uint64_t, forest->nranks + 1);
   return forest;
 }
