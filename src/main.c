@@ -13,12 +13,15 @@
 #include "talus/memory.h"
 #include "talus/rheology.h"
 #include "talus/run.h"
+#include "talus/run_size.h"
 #include "talus/signals.h"
 #include "talus/spelling.h"
 
 _Static_assert((int)FOREST_MAX_LEVEL ==
                    (DIM == 2 ? CASE_MAX_LEVEL_2D : CASE_MAX_LEVEL_3D),
                "a case may ask for what the forest can do");
+_Static_assert((int)FOREST_MAX_TREES == (int)CASE_MAX_TREES,
+               "and for as many trees");
 
 /* The text of the case, read by rank 0, on all ranks. */
 static char *read_everywhere(const char *path) {
@@ -105,11 +108,17 @@ static int command_check(int argc, char *argv[]) {
   struct command_line line;
   command_line_read(argc, argv, false, &line);
   struct case_file *file = load_case(&line);
+  struct run_size size;
+  char text[RUN_SIZE_LENGTH];
+  run_size_estimate(case_params(file), &size);
+  run_size_text(&size, text);
   if (base_rank() == 0) {
     case_print(file, stdout);
     for (int k = 0; k < case_params(file)->ncovers; k++)
       printf("%s\n", case_params(file)->cover[k]);
+    printf("size: %s\n", text);
     fflush(stdout);
+    run_size_warn(&size);
     if (!case_finds_grains(file))
       fprintf(stderr,
               "talus: warning: grains.shape is positive nowhere that was "

@@ -11,6 +11,7 @@
 #include <time.h>
 
 #include "talus/closure_fields.h"
+#include "talus/creep.h"
 #include "talus/diagnostics.h"
 #include "talus/error.h"
 #include "talus/forest.h"
@@ -26,12 +27,16 @@
 #include "talus/percolation.h"
 #include "talus/profile.h"
 #include "talus/progress.h"
+#include "talus/rest.h"
+#include "talus/run_size.h"
+#include "talus/run_start.h"
 #include "talus/run_state.h"
 #include "talus/series.h"
 #include "talus/signals.h"
 #include "talus/simulation.h"
 #include "talus/snapshot.h"
 #include "talus/step.h"
+#include "talus/step_floor.h"
 
 enum timed {
   TIME_START,
@@ -53,8 +58,11 @@ struct run {
   char *parameters; /* csv text */
   char *checkpoint_path;
   bool checkpoint_written; /* there is one of this run */
+  bool at_rest;            /* the grains are (rest.h) */
   bool tables;            /* of before the restart are there, to be continued */
   double wall_checkpoint; /* when the last one was written */
+  struct run_size size;   /* of it at the start */
+  double least_dt;        /* step_floor.h */
   struct run_state before; /* when this invocation began */
   double wall_begin;       /* then */
   int64_t first_step;      /* the step then */
@@ -71,7 +79,7 @@ static bool same_time(const struct run *run, double a, double b) {
 
 static bool at_end(const struct run *run) {
   double time = run->sim->time, stop = run->params->stop;
-  return time >= stop || same_time(run, time, stop);
+  return run->at_rest || time >= stop || same_time(run, time, stop);
 }
 
 /* The next time a step must land on. */
@@ -177,6 +185,7 @@ static void write_tables(struct run *run) {
     sim->energy.initial = d.kinetic + d.potential;
     sim->energy.gas = d.gas;
     check_grains(run, d.volume);
+    creep_say(run->params, d.height);
   }
   if (row) write_row(run, &d);
   if (outline)
@@ -254,13 +263,10 @@ static void check_tables(struct run *run) {
 }
 
 static void open_files(struct run *run) {
-  const struct simulation *sim = run->sim;
   const char *directory = run->options->directory;
   const struct run_state *before = &run->before;
   output_make_directory(directory);
   lock_take(directory);
-  run->progress =
-      progress_new(sim->time, run->params->stop, run->options->quiet);
   if (run->options->restart)
     old_run_remove_snapshots(directory, (int)run->before.snapshots);
   else
@@ -280,7 +286,7 @@ static void say_begin(const struct run *run) {
   static const char *const alone =
       "the checkpoint stands alone: series.csv and profile.csv begin here";
   const struct simulation *sim = run->sim;
-  char date[64] = "";
+  char date[64] = "", size[RUN_SIZE_LENGTH];
   time_t now = time(NULL);
   strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S", localtime(&now));
   log_info("talus %s, %d-dimensional, %d rank%s, %s", TALUS_VERSION, DIM,
@@ -291,6 +297,8 @@ static void say_begin(const struct run *run) {
   log_info("%s at step %" PRId64 ", time %.10g with %" PRId64 " cells",
            run->options->restart ? "restart" : "start", sim->step, sim->time,
            forest_nleaves_global(sim->forest));
+  run_size_text(&run->size, size);
+  log_info("size: %s", size);
   progress_say(run->progress, "%s: %" PRId64 " cells on %d rank%s, to time %g",
                run->params->name, forest_nleaves_global(sim->forest),
                base_size(), base_size() == 1 ? "" : "s", run->params->stop);
@@ -323,9 +331,10 @@ static struct run *run_new(const struct params *params,
       output_parameters(options->write_parameters, options->context);
   run->checkpoint_written = options->restart;
   run->memory = (double)mem_peak_resident();
-  run->sim = options->restart
-                 ? run_state_read(run->checkpoint_path, params, &run->before)
-                 : simulation_new(params);
+  run->progress = progress_new(params->stop, options->quiet);
+  run->sim = run_start(params, options->restart ? run->checkpoint_path : NULL,
+                       run->progress, &run->before, &run->size);
+  run->least_dt = step_floor(run->sim);
   check_tables(run);
   signals_remember();
   open_files(run);
@@ -448,7 +457,7 @@ static struct verdict agree(const struct run *run) {
 static const char *reason_to_stop(const struct run *run,
                                   const struct verdict *verdict) {
   int64_t steps = run->sim->step - run->first_step;
-  if (at_end(run)) return "done";
+  if (at_end(run)) return run->at_rest ? "at rest" : "done";
   if (verdict->signal != 0) return signals_name(verdict->signal);
   if (verdict->out_of_time) return "--max-walltime";
   if (run->options->max_steps >= 0 && steps >= run->options->max_steps)
@@ -456,17 +465,36 @@ static const char *reason_to_stop(const struct run *run,
   return NULL;
 }
 
-/* One step, its clock set to the event it was meant to reach. */
-static int advance(struct run *run) {
+/* One step, its clock set to the event it was meant to reach. *taken is how it
+ * began. */
+static int advance(struct run *run, struct step_taken *taken) {
   struct simulation *sim = run->sim;
   double begin = MPI_Wtime(), event = next_event(run);
-  int status = step_advance(sim, step_bound(run, event));
+  *taken = (struct step_taken){sim->time, sim->dt, step_bound(run, event)};
+  int status = step_advance(sim, taken->dt_max);
   if (same_time(run, sim->time, event)) sim->time = event;
   const int64_t cells = forest_nleaves_global(sim->forest);
   run->cell_steps += (double)cells;
   if (cells > run->most_cells) run->most_cells = cells;
   lap(run, TIME_STEP, begin);
   return status;
+}
+
+/* One step, and whether the run can go on after it: EXIT_DONE, or what it ends
+ * with. What is wrong has been said. */
+static int try_step(struct run *run) {
+  struct step_taken taken;
+  const int status = advance(run, &taken);
+  if (status != EXIT_DONE) {
+    say_failure(run);
+    return status;
+  }
+  if (run->sim->outgrown > 0) {
+    run_size_say_outgrown(&run->size, run->sim->outgrown);
+    return EXIT_SYSTEM;
+  }
+  return step_is_too_short(run->sim, run->least_dt, &taken) ? EXIT_NUMERICAL
+                                                            : EXIT_DONE;
 }
 
 static int run_loop(struct run *run) {
@@ -480,12 +508,12 @@ static int run_loop(struct run *run) {
       say_end(run, why);
       return at_end(run) ? EXIT_DONE : EXIT_STOPPED;
     }
-    int status = advance(run);
+    int status = try_step(run);
     if (status != EXIT_DONE) {
       write_checkpoint(run);
-      say_failure(run);
       return status;
     }
+    run->at_rest = rest_is_reached(run->sim);
     write_output(run);
     progress_step(run->progress, sim->step, sim->time, sim->dt,
                   forest_nleaves_global(sim->forest));

@@ -15,6 +15,9 @@
 
 struct simulation;
 
+/* Cells by which a band is widened before a leaf may be merged. */
+enum { ADAPT_HYSTERESIS = 2 };
+
 /* Has the surface moved far enough, or have enough steps passed? */
 bool adapt_is_due(const struct simulation *sim);
 /* One round of dividing and merging; fields, mesh and solvers follow.

@@ -156,6 +156,8 @@ struct params {
 
   /* Output */
   double stop;         /* end time */
+  double rest_speed;   /* the run ends before that if its grains have been */
+  double rest_time;    /* slower for this time; 0: it does not */
   double length_scale; /* for reading only: L0, or 1 */
   double profile_times[PARAMS_MAX_TIMES];
   int nprofile_times;

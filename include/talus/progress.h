@@ -10,8 +10,12 @@
 
 struct progress;
 
-/* A run from time `start` to time `stop`. Not collective. */
-struct progress *progress_new(double start, double stop, bool quiet);
+/* A run to time `stop`. Not collective. */
+struct progress *progress_new(double stop, bool quiet);
+/* Tell what is being done before the first step, and what part of it is done;
+ * shown as often. */
+void progress_start(struct progress *progress, const char *what, double part,
+                    int64_t cells);
 /* Tell of a finished step; shown a few times a second at most. */
 void progress_step(struct progress *progress, int64_t step, double time,
                    double dt, int64_t cells);

@@ -48,6 +48,15 @@ enum step_stage {
   NSTAGES
 };
 
+/* How a simulation starts, which takes long on a fine grid. */
+struct simulation_start {
+  int64_t most_leaves; /* for which there is memory; 0: no bound */
+  /* Told now and then what is being done, what part of it is done, and the
+   * leaves so far; on every rank for itself. NULL: nobody is told. */
+  void (*tell)(void *context, const char *what, double part, int64_t leaves);
+  void *context;
+};
+
 struct simulation {
   const struct params *params; /* borrowed */
   struct forest *forest;       /* owned, as all below */
@@ -97,9 +106,14 @@ struct simulation {
   bool open[MESH_MAX_PATCHES];   /* the others */
   bool pressure_set;             /* by some face of the mesh */
 
+  const struct simulation_start *start; /* borrowed while it starts, or NULL */
+  int64_t most_leaves;                  /* there is memory for; 0: no bound */
+  double outgrown; /* leaves wanted when there was none, else 0 */
+
   double time, dt;
   int64_t step;
-  double travel; /* cells the surface may have moved since adaptation */
+  double travel;    /* cells the surface may have moved since adaptation */
+  double slow_time; /* that the grains have been slow (rest.h), s */
   struct solve_stats pressure, predictor, viscous; /* of the last step, by
                               Picard repetitions all their iterations and the
                               worst residual */
@@ -117,6 +131,10 @@ struct simulation {
 /* Initial state of the case: grid adapted to it, fields set, static
  * pressure. Collective. Owned by the caller. */
 struct simulation *simulation_new(const struct params *params);
+/* The same; where the grid would outgrow the memory, `outgrown` is set and the
+ * grid stays coarser. */
+struct simulation *simulation_new_told(const struct params *params,
+                                       const struct simulation_start *start);
 /* The same fields on a given forest (which it takes over), all zero, for a
  * restart: io then fills `fields`, and the caller sets all scalars. */
 struct simulation *simulation_new_on(const struct params *params,

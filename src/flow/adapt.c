@@ -14,9 +14,6 @@
 #include "talus/remap.h"
 #include "talus/simulation.h"
 
-/* Cells by which a criterion is widened before a leaf may be merged. */
-enum { HYSTERESIS = 2 };
-
 static bool is_surface(double c) {
   return c > PROPERTIES_GAS && c < 1 - PROPERTIES_GAS;
 }
@@ -80,7 +77,7 @@ static void want_surface(struct simulation *sim,
   double *mark = sim->cell[0]->v;
   const int width = (int)ceil(criterion->width);
   mark_surface(mesh, sim->c->v, mark);
-  for (int k = 0; k <= width + HYSTERESIS; k++) {
+  for (int k = 0; k <= width + ADAPT_HYSTERESIS; k++) {
     if (k > 0) mesh_spread(mesh, mark);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       if (mark[i] > 0) {
@@ -170,8 +167,25 @@ static void apply_criteria(struct simulation *sim, struct wanted *wanted) {
   }
 }
 
-/* Above the cap nothing is divided any more. */
-static void cap_count(const struct simulation *sim, int8_t *flag) {
+/* Does a grid of so many leaves keep to the cap of the case, and to memory? */
+static bool is_allowed(struct simulation *sim, double count) {
+  const int64_t cap = sim->params->max_cells, memory = sim->most_leaves;
+  if (cap > 0 && count > (double)cap) {
+    WARN_ONCE(
+        "%.0f cells wanted, max_cells is %lld: the grid stays coarser "
+        "than the criteria ask for",
+        count, (long long)cap);
+    return false;
+  }
+  if (memory > 0 && count > (double)memory) {
+    sim->outgrown = count;
+    return false;
+  }
+  return true;
+}
+
+/* Above the caps nothing is divided any more. */
+static void cap_count(struct simulation *sim, int8_t *flag) {
   const struct mesh *mesh = sim->mesh;
   double growth = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -179,13 +193,7 @@ static void cap_count(const struct simulation *sim, int8_t *flag) {
   }
   growth = mesh_sum(mesh, growth);
   const double count = (double)forest_nleaves_global(sim->forest) + growth;
-  if (sim->params->max_cells == 0 || count <= (double)sim->params->max_cells) {
-    return;
-  }
-  WARN_ONCE(
-      "%.0f cells wanted, max_cells is %lld: the grid stays coarser "
-      "than the criteria ask for",
-      count, (long long)sim->params->max_cells);
+  if (growth == 0 || is_allowed(sim, count)) return;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     if (flag[i] > 0) flag[i] = 0;
   }

@@ -11,6 +11,7 @@
 #include "talus/hierarchy.h"
 #include "talus/level_raster.h"
 #include "talus/memory.h"
+#include "talus/minmax.h"
 #include "talus/openings.h"
 #include "talus/shapes.h"
 #include "talus/skin.h"
@@ -249,6 +250,15 @@ void simulation_destroy(struct simulation *sim) {
  * the grid: not at all to see where they are, to adapt the grid to them. */
 enum fineness { FINENESS_ROUGH = 0, FINENESS_FINAL = 3 };
 
+/* Say, every so many leaves of a loop over them, how far it is. */
+static void tell(const struct simulation *sim, const char *what, int32_t i) {
+  enum { EVERY = 256 };
+  if (!sim->start || !sim->start->tell || i % EVERY != 0) return;
+  sim->start->tell(sim->start->context, what,
+                   (double)i / max2(sim->mesh->nleaves, 1),
+                   forest_nleaves_global(sim->forest));
+}
+
 /* Fractions of a shape. Coarse leaves are divided more often, so that what
  * is DEEPEST levels finer is not missed. */
 static void fill_shape(const struct simulation *sim, enum fineness fineness,
@@ -256,6 +266,7 @@ static void fill_shape(const struct simulation *sim, enum fineness fineness,
   enum { DEEPEST = 6 };
   const struct mesh *mesh = sim->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
+    tell(sim, "shapes", i);
     int depth = sim->params->level_max - mesh->level[i] + (int)fineness;
     if (depth > DEEPEST) depth = DEEPEST;
     field->v[i] = shape->eval ? shape_fraction(shape->eval, shape->context,
@@ -297,6 +308,7 @@ static void fill_state(struct simulation *sim, enum fineness fineness) {
     if (!function->eval) continue;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       double x[3] = {0};
+      tell(sim, "velocity", i);
       for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
       sim->u[d]->v[i] = vof_is_cut(sim->c->v[i])
                             ? mixed_velocity(sim, function, i)
@@ -335,13 +347,16 @@ static void adapt_to_state(struct simulation *sim, enum fineness fineness) {
   }
 }
 
-struct simulation *simulation_new(const struct params *params) {
+struct simulation *simulation_new_told(const struct params *params,
+                                       const struct simulation_start *start) {
   struct forest_layout layout;
   simulation_layout(params, &layout);
   const int level =
       params->ncriteria > 0 ? params->level_min : params->level_max;
   struct simulation *sim =
       simulation_new_on(params, forest_new(MPI_COMM_WORLD, &layout, level));
+  sim->start = start;
+  sim->most_leaves = start->most_leaves;
   if (params->ncriteria > 0) {
     adapt_to_state(sim, FINENESS_ROUGH);
     adapt_to_state(sim, FINENESS_FINAL);
@@ -353,8 +368,15 @@ struct simulation *simulation_new(const struct params *params) {
     fill_shape(sim, FINENESS_FINAL, &params->tracer[k].shape, sim->tracer[k]);
   }
   fill_face_velocity(sim);
+  tell(sim, "pressure at rest", 0);
   step_start(sim);
+  sim->start = NULL;
   return sim;
+}
+
+struct simulation *simulation_new(const struct params *params) {
+  const struct simulation_start start = {.most_leaves = 0};
+  return simulation_new_told(params, &start);
 }
 
 void simulation_densities(const struct simulation *sim, double density[2]) {

@@ -34,13 +34,12 @@ static bool has_launcher(void) {
   return getenv("OMPI_COMM_WORLD_SIZE") != NULL || getenv("PMI_SIZE") != NULL;
 }
 
-struct progress *progress_new(double start, double stop, bool quiet) {
+struct progress *progress_new(double stop, bool quiet) {
   struct progress *p = MEM_NEW(struct progress, 1);
   p->stop = stop;
   p->shown = !quiet && base_rank() == 0;
   p->terminal = p->shown && !has_launcher() && isatty(STDOUT_FILENO);
   p->wall_line = p->wall_rate = MPI_Wtime();
-  p->time_rate = start;
   p->step_rate = -1;
   return p;
 }
@@ -92,18 +91,12 @@ static void format_line(const struct progress *p, int64_t step, double time,
            time, p->stop, done, step, dt, cells, p->steps_per_second, left);
 }
 
-void progress_step(struct progress *p, int64_t step, double time, double dt,
-                   int64_t cells) {
-  if (!p->shown) return;
-  double now = MPI_Wtime();
-  double interval = p->terminal ? TERMINAL_INTERVAL : PLAIN_INTERVAL;
-  bool first = p->step_rate < 0;
-  if (first) update_rates(p, now, step, time);
-  if (now - p->wall_line < interval) return;
-  if (!first) update_rates(p, now, step, time);
-  char line[256];
-  format_line(p, step, time, dt, cells, sizeof line, line);
-  p->wall_line = now;
+static bool is_due(const struct progress *p, double now) {
+  return now - p->wall_line >=
+         (p->terminal ? TERMINAL_INTERVAL : PLAIN_INTERVAL);
+}
+
+static void show(struct progress *p, const char *line) {
   if (p->terminal) {
     /* Blanks cover what is left of a longer line. */
     printf("\r%-*s", p->width, line);
@@ -112,6 +105,29 @@ void progress_step(struct progress *p, int64_t step, double time, double dt,
     printf("%s\n", line);
   }
   fflush(stdout);
+  p->wall_line = MPI_Wtime();
+}
+
+void progress_step(struct progress *p, int64_t step, double time, double dt,
+                   int64_t cells) {
+  if (!p->shown) return;
+  double now = MPI_Wtime();
+  bool first = p->step_rate < 0;
+  if (first) update_rates(p, now, step, time);
+  if (!is_due(p, now)) return;
+  if (!first) update_rates(p, now, step, time);
+  char line[256];
+  format_line(p, step, time, dt, cells, sizeof line, line);
+  show(p, line);
+}
+
+void progress_start(struct progress *p, const char *what, double part,
+                    int64_t cells) {
+  if (!p->shown || !is_due(p, MPI_Wtime())) return;
+  char line[256];
+  snprintf(line, sizeof line, "start: %" PRId64 " cells, %s %.0f %%", cells,
+           what, 100 * part);
+  show(p, line);
 }
 
 void progress_say(struct progress *p, const char *format, ...) {
