@@ -8,6 +8,7 @@
 #include <mpi.h>
 #include <stdlib.h>
 
+#include "talus/count.h"
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
@@ -132,11 +133,11 @@ static int list_links(const struct mesh *mesh, const int32_t *number,
 static int gather_pairs(const struct mesh *mesh, int n, void **pairs) {
   int *count = MEM_NEW(int, (size_t)mesh->nranks);
   int *begin = MEM_NEW(int, (size_t)mesh->nranks);
-  int mine = 2 * n, all = 0;
+  int mine = count_index(2 * (int64_t)n, "pairs"), all = 0;
   MPI_CHECK(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, mesh->comm));
   for (int r = 0; r < mesh->nranks; r++) {
     begin[r] = all;
-    all += count[r];
+    all = count_index((int64_t)all + count[r], "pairs");
   }
   double *gathered = MEM_NEW(double, (size_t)all);
   MPI_CHECK(MPI_Allgatherv(*pairs, mine, MPI_DOUBLE, gathered, count, begin,

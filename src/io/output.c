@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "disk.h"
+#include "talus/count.h"
 #include "talus/csv_row.h"
 #include "talus/error.h"
 #include "talus/hdf5_file.h"
@@ -17,7 +18,8 @@
 /* Runs of one rank may do without MPI (unit tests). */
 static void broadcast(void *data, size_t bytes) {
   if (base_size() > 1)
-    MPI_CHECK(MPI_Bcast(data, (int)bytes, MPI_BYTE, 0, MPI_COMM_WORLD));
+    MPI_CHECK(MPI_Bcast(data, count_index((int64_t)bytes, "bytes"), MPI_BYTE, 0,
+                        MPI_COMM_WORLD));
 }
 
 /* 0, or the errno that keeps `path` from being a directory we can write in,

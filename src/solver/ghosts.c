@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "linking.h"
+#include "talus/count.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 
@@ -14,6 +15,8 @@ int32_t ghosts_get(struct linking *k, uint64_t key, int level) {
   int32_t g = table_find(&k->ghosts, key, level);
   if (g >= 0) return k->h->nowned + g;
   if (k->nghosts == k->ghost_capacity) {
+    count_check((int64_t)k->h->nowned + k->nghosts + 1, INT32_MAX / 2,
+                "nodes of the hierarchy");
     k->ghost_capacity = k->ghost_capacity ? 2 * k->ghost_capacity : 64;
     const size_t n = (size_t)k->ghost_capacity;
     k->ghost_key = mem_resize(k->ghost_key, n, sizeof *k->ghost_key);
@@ -37,6 +40,7 @@ struct questions {
 static int32_t question_add(struct questions *q, uint64_t key, int level,
                             int rank) {
   if (q->n == q->capacity) {
+    count_check(q->n, INT32_MAX / 4, "questions");
     q->capacity = q->capacity ? 2 * q->capacity : 64;
     q->request =
         mem_resize(q->request, (size_t)q->capacity, sizeof *q->request);
@@ -105,7 +109,7 @@ static void ask(struct linking *k, struct questions *q) {
   /* Answers travel through one array: ours to give behind those we get. */
   double *v = MEM_NEW(double, 2 * n);
   for (int64_t j = 0; j < nasked; j++) {
-    plan.send_index[j] = (int32_t)(n + j);
+    plan.send_index[j] = count_index(n + j, "answers");
     v[n + j] = linking_find(k, asked[j].tag, asked[j].key) >= 0;
   }
   plan_run(&plan, 1, &v, 1, false);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "linking.h"
+#include "talus/count.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 
@@ -133,11 +134,13 @@ static void number_slots(struct linking *k) {
     struct level *level = &h->level[l];
     level->begin = (int32_t)slots;
     level->family_begin = (int32_t)families;
-    level->nowned = NCHILD * level->nfamilies;
+    level->nowned =
+        count_index(NCHILD * (int64_t)level->nfamilies, "nodes of a level");
     if (l == 0 && k->rank == 0) level->nowned = k->curve->ntrees;
     slots += level->nowned;
     families += level->nfamilies;
-    CHECK(slots < INT32_MAX / (2 * DIM), "too many nodes on one rank");
+    /* with ghosts, virtual children and images, of which each has a slot */
+    count_check(slots, INT32_MAX / (2 * DIM), "nodes of the hierarchy");
   }
   h->nowned = h->nactive = (int32_t)slots;
   h->family_parent = MEM_NEW(int32_t, families);

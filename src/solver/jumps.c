@@ -3,6 +3,7 @@
  * interpolated from the coarse leaf with the slopes that mesh_fill uses, so
  * that the cycle works on nearly the operator that is solved. */
 #include "linking.h"
+#include "talus/count.h"
 #include "talus/memory.h"
 
 int linking_level(const struct linking *k, int32_t slot) {
@@ -60,6 +61,7 @@ static void list_jumps(struct linking *k, int l, bool count_only) {
 void jumps_make(struct linking *k) {
   struct hierarchy *h = k->h;
   for (int l = 1; l < h->nlevels; l++) list_jumps(k, l, true);
+  count_index((int64_t)h->nslots + h->njumps, "nodes of the hierarchy");
   h->jump = MEM_NEW(struct jump, h->njumps);
   h->njumps = 0;
   for (int l = 1; l < h->nlevels; l++) list_jumps(k, l, false);

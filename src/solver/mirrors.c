@@ -4,12 +4,15 @@
  * has walls in its diagonal; the images are seen by the transposed gradient
  * along a wall and by the prolongation. */
 #include "linking.h"
+#include "talus/count.h"
 #include "talus/memory.h"
 
 /* Slot of a new image. */
 static int32_t add_mirror(struct linking *k, int32_t source, int patch) {
   struct hierarchy *h = k->h;
   if (h->nmirrors == k->mirror_capacity) {
+    count_index((int64_t)h->nslots + h->njumps + 2 * (int64_t)h->nmirrors + 64,
+                "nodes of the hierarchy");
     k->mirror_capacity = k->mirror_capacity ? 2 * k->mirror_capacity : 64;
     h->mirror =
         mem_resize(h->mirror, (size_t)k->mirror_capacity, sizeof *h->mirror);

@@ -10,11 +10,13 @@
 #include "curve.h"
 #include "exchange.h"
 #include "table.h"
+#include "talus/count.h"
 #include "talus/mesh.h"
 
 enum {
-  KIND_SHIFT = 28, /* 2^28 nodes of each kind at most */
-  KIND_LEAF = 0,   /* leaves and ghosts */
+  KIND_SHIFT = 28,
+  KIND_MOST = (1 << KIND_SHIFT) - 1, /* nodes of each kind */
+  KIND_LEAF = 0,                     /* leaves and ghosts */
   KIND_AVERAGE = 1,
   KIND_VIRTUAL = 2,
   KIND_BOUNDARY = 3
@@ -23,8 +25,11 @@ static inline int node_kind(int32_t node) { return node >> KIND_SHIFT; }
 static inline int32_t node_number(int32_t node) {
   return node & (((int32_t)1 << KIND_SHIFT) - 1);
 }
-static inline int32_t node_name(int kind, int32_t number) {
-  return kind << KIND_SHIFT | number;
+static inline int32_t node_name(int kind, int64_t number) {
+  return kind << KIND_SHIFT |
+         (int32_t)(number <= KIND_MOST
+                       ? number
+                       : count_check(number, KIND_MOST, "nodes of a kind"));
 }
 
 /* Tags of the hash table; averages use their level + 1. */

@@ -11,6 +11,7 @@
 
 #include "curve.h"
 #include "p4.h"
+#include "talus/count.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 
@@ -157,6 +158,7 @@ struct forest *forest_from_levels(MPI_Comm comm,
                                   const int8_t *levels) {
   struct forest *forest = forest_begin(comm, layout);
   const int32_t ntrees = forest->curve.ntrees;
+  count_index(n, "leaves");
   uint64_t span = 0, start = 0, total = 0;
   for (int64_t i = 0; i < n; i++) {
     bool valid = levels[i] >= 0 && levels[i] <= FOREST_MAX_LEVEL;

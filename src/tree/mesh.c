@@ -10,12 +10,11 @@
 uint64_t mesh_key_span(int level) { return curve_span(level); }
 
 int32_t list_grow(void **list, int32_t *n, int32_t *capacity, size_t size) {
+  count_check((int64_t)*n + 1, KIND_MOST, "nodes of a kind");
   if (*n == *capacity) {
     *capacity = *capacity ? 2 * *capacity : 256;
     *list = mem_resize(*list, (size_t)*capacity, size);
   }
-  CHECK(*n < (1 << KIND_SHIFT) - 1, "more than 2^%d nodes on one rank",
-        KIND_SHIFT);
   return (*n)++;
 }
 

@@ -95,26 +95,26 @@ static struct ghost_leaf *sort_receivers(const struct ghost_list *list,
   return out;
 }
 
-/* Swap ghost leaves; ghosts arrive sorted by rank, so by key. */
+/* Swap ghost leaves; ghosts arrive sorted by rank, so by key. Counts are in
+ * leaves, not in bytes, which would reach 2^31 much sooner. */
 static struct ghost_leaf *swap_ghosts(struct plan *plan,
                                       const struct ghost_leaf *out) {
-  const int nranks = plan->nranks, size = (int)sizeof *out;
-  int *count = MEM_NEW(int, 4 * nranks);
-  int *nsend = count, *nrecv = count + nranks;
-  int *send_at = count + 2 * nranks, *recv_at = count + 3 * nranks;
+  const int nranks = plan->nranks;
+  int *nsend = MEM_NEW(int, 2 * nranks), *nrecv = nsend + nranks;
   for (int r = 0; r < nranks; r++) {
-    nsend[r] = (plan->send_begin[r + 1] - plan->send_begin[r]) * size;
-    send_at[r] = plan->send_begin[r] * size;
+    nsend[r] = plan->send_begin[r + 1] - plan->send_begin[r];
   }
   MPI_CHECK(MPI_Alltoall(nsend, 1, MPI_INT, nrecv, 1, MPI_INT, plan->comm));
   for (int r = 0; r < nranks; r++) {
-    recv_at[r] = plan->recv_begin[r] * size;
-    plan->recv_begin[r + 1] = plan->recv_begin[r] + nrecv[r] / size;
+    plan->recv_begin[r + 1] =
+        count_index((int64_t)plan->recv_begin[r] + nrecv[r], "ghosts");
   }
   struct ghost_leaf *in = MEM_NEW(struct ghost_leaf, plan->recv_begin[nranks]);
-  MPI_CHECK(MPI_Alltoallv(out, nsend, send_at, MPI_BYTE, in, nrecv, recv_at,
-                          MPI_BYTE, plan->comm));
-  mem_free(count);
+  MPI_Datatype type = plan_type_new(sizeof *out);
+  MPI_CHECK(MPI_Alltoallv(out, nsend, plan->send_begin, type, in, nrecv,
+                          plan->recv_begin, type, plan->comm));
+  MPI_CHECK(MPI_Type_free(&type));
+  mem_free(nsend);
   return in;
 }
 
@@ -127,6 +127,7 @@ static void add_ghosts(struct builder *b) {
   struct ghost_leaf *in = swap_ghosts(plan, out);
   const int32_t n = mesh->nleaves;
   mesh->nghosts = plan->recv_begin[mesh->nranks];
+  count_check((int64_t)n + mesh->nghosts, KIND_MOST, "leaves and ghosts");
   const size_t total = (size_t)n + (size_t)mesh->nghosts;
   plan->recv_index = MEM_NEW(int32_t, mesh->nghosts);
   mesh->key = mem_resize(mesh->key, total, sizeof *mesh->key);
@@ -164,6 +165,7 @@ void build_leaves(struct builder *b) {
   struct mesh *mesh = b->mesh;
   plan_begin(&mesh->exchange->ghost, mesh->comm);
   mesh->nleaves = forest_nleaves(mesh->forest);
+  count_check(mesh->nleaves, KIND_MOST, "leaves");
   mesh->key = MEM_NEW(uint64_t, mesh->nleaves);
   mesh->level = MEM_NEW(int8_t, mesh->nleaves);
   forest_keys(mesh->forest, mesh->key);

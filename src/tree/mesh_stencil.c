@@ -54,7 +54,7 @@ static int32_t virtual_get(struct builder *b, int32_t leaf, int child) {
     b->group_leaf[k] = leaf;
     b->group_of[leaf] = k;
   }
-  return node_name(KIND_VIRTUAL, b->group_of[leaf] * NCHILD + child);
+  return node_name(KIND_VIRTUAL, (int64_t)b->group_of[leaf] * NCHILD + child);
 }
 
 /* Node of the given level that covers the region at `key`. */

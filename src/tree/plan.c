@@ -4,10 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "talus/count.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 
 enum { TAG_PLAN = 71 };
+
+static const char NUMBERS[] = "numbers";
 
 void plan_begin(struct plan *plan, MPI_Comm comm) {
   memset(plan, 0, sizeof *plan);
@@ -36,31 +39,38 @@ static int by_rank(const void *a, const void *b) {
   return 0;
 }
 
+MPI_Datatype plan_type_new(size_t bytes) {
+  MPI_Datatype type;
+  MPI_CHECK(MPI_Type_contiguous((int)bytes, MPI_BYTE, &type));
+  MPI_CHECK(MPI_Type_commit(&type));
+  return type;
+}
+
 struct plan_request *plan_ask(struct plan *plan, int64_t n,
                               struct plan_request *request, int64_t *nasked) {
   const int nranks = plan->nranks;
-  const int size = (int)sizeof(struct plan_request);
-  int *count = MEM_NEW(int, 4 * nranks), *begin = count + 2 * nranks;
-  int *asked = count + nranks, *asked_begin = begin + nranks;
+  int *count = MEM_NEW(int, 2 * nranks), *asked = count + nranks;
+  count_index(n, "requests");
   if (n > 0) qsort(request, (size_t)n, sizeof *request, by_rank);
   plan->recv_index = MEM_NEW(int32_t, n);
   for (int64_t i = 0; i < n; i++) {
-    count[request[i].rank] += size;
+    count[request[i].rank]++;
     plan->recv_begin[request[i].rank + 1]++;
     plan->recv_index[i] = request[i].index;
     request[i].rank = plan->rank; /* the receiver sees who asks */
   }
   MPI_CHECK(MPI_Alltoall(count, 1, MPI_INT, asked, 1, MPI_INT, plan->comm));
   for (int r = 0; r < nranks; r++) {
-    plan->send_begin[r + 1] = plan->send_begin[r] + asked[r] / size;
+    plan->send_begin[r + 1] =
+        count_index((int64_t)plan->send_begin[r] + asked[r], "requests");
     plan->recv_begin[r + 1] += plan->recv_begin[r];
-    begin[r] = plan->recv_begin[r] * size;
-    asked_begin[r] = plan->send_begin[r] * size;
   }
   *nasked = plan->send_begin[nranks];
   struct plan_request *out = MEM_NEW(struct plan_request, *nasked);
-  MPI_CHECK(MPI_Alltoallv(request, count, begin, MPI_BYTE, out, asked,
-                          asked_begin, MPI_BYTE, plan->comm));
+  MPI_Datatype type = plan_type_new(sizeof *out);
+  MPI_CHECK(MPI_Alltoallv(request, count, plan->recv_begin, type, out, asked,
+                          plan->send_begin, type, plan->comm));
+  MPI_CHECK(MPI_Type_free(&type));
   plan->send_index = MEM_NEW(int32_t, *nasked);
   mem_free(count);
   return out;
@@ -94,8 +104,9 @@ static void unpack(const struct plan *plan, int n, double *const v[], int block,
 
 /* Room in the buffer for `each` numbers per index: what is sent first. */
 static void reserve(struct plan *plan, int64_t each) {
-  const int64_t n =
-      (plan->send_begin[plan->nranks] + plan->recv_begin[plan->nranks]) * each;
+  const int64_t n = ((int64_t)plan->send_begin[plan->nranks] +
+                     plan->recv_begin[plan->nranks]) *
+                    each;
   if (n <= plan->capacity) return;
   plan->capacity = n;
   plan->buffer = mem_resize(plan->buffer, (size_t)n, sizeof(double));
@@ -113,16 +124,18 @@ static void exchange(struct plan *plan, int64_t each) {
     int64_t begin = plan->recv_begin[r] * each;
     int64_t end = plan->recv_begin[r + 1] * each;
     if (end > begin) {
-      MPI_CHECK(MPI_Irecv(in + begin, (int)(end - begin), MPI_DOUBLE, r,
-                          TAG_PLAN, plan->comm, &plan->request[nrequests++]));
+      MPI_CHECK(MPI_Irecv(in + begin, count_index(end - begin, NUMBERS),
+                          MPI_DOUBLE, r, TAG_PLAN, plan->comm,
+                          &plan->request[nrequests++]));
     }
   }
   for (int r = 0; r < plan->nranks; r++) {
     int64_t begin = plan->send_begin[r] * each;
     int64_t end = plan->send_begin[r + 1] * each;
     if (end > begin) {
-      MPI_CHECK(MPI_Isend(out + begin, (int)(end - begin), MPI_DOUBLE, r,
-                          TAG_PLAN, plan->comm, &plan->request[nrequests++]));
+      MPI_CHECK(MPI_Isend(out + begin, count_index(end - begin, NUMBERS),
+                          MPI_DOUBLE, r, TAG_PLAN, plan->comm,
+                          &plan->request[nrequests++]));
     }
   }
   MPI_CHECK(MPI_Waitall(nrequests, plan->request, MPI_STATUSES_IGNORE));

@@ -6,6 +6,7 @@
 
 #include <mpi.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 struct plan {
@@ -26,6 +27,8 @@ struct plan_request {
   int32_t index; /* where the answer goes in the asker's array */
 };
 
+/* A type of MPI for things of so many bytes, to be freed by the caller. */
+MPI_Datatype plan_type_new(size_t bytes);
 /* An empty plan. */
 void plan_begin(struct plan *plan, MPI_Comm comm);
 void plan_end(struct plan *plan);
