@@ -20,8 +20,9 @@ P4EST_LIBS   = -lp4est -lsc
 
 OPT_release  = -O3 $(NATIVE) -DNDEBUG
 OPT_debug    = -O0
-OPT_asan     = -O1 -fno-omit-frame-pointer -fsanitize=address,undefined \
-               -fno-sanitize-recover=undefined
+OPT_asan     = -O1 -fno-omit-frame-pointer \
+               -fsanitize=address,undefined,float-cast-overflow \
+               -fno-sanitize-recover=undefined,float-cast-overflow
 OPT_coverage = -O0 --coverage
 WARNINGS     = -Wall -Wextra -Wshadow -Wstrict-prototypes \
                -Wmissing-prototypes -Wvla $(WERROR)
@@ -126,9 +127,10 @@ format: ## clang-format 14 over all C files
 	clang-format-14 -i $(C_FILES)
 format-check check-includes: ## style; layering and forbidden calls
 	@tests/run.sh $(BUILD) $(if $(filter f%,$@),format,includes)
-tidy: ## clang-tidy
-	@printf '%s\n' $(filter src/%.c,$(C_FILES)) | xargs -P $(JOBS) -I{} \
-	  clang-tidy --quiet {} -- -std=c11 -DDIM=2 $(CPPFLAGS) $$($(CC) --showme:compile)
+tidy: ## clang-tidy, in both dimensions
+	@failed=0; for d in 2 3; do printf '%s\n' $(filter src/%.c,$(C_FILES)) | \
+	  xargs -P $(JOBS) -I{} clang-tidy --quiet {} -- -std=c11 -DDIM=$$d \
+	    $(CPPFLAGS) $$($(CC) --showme:compile) || failed=1; done; exit $$failed
 compdb: ## compile_commands.json
 	bear -- $(MAKE) BUILD=$(BUILD)/compdb all tests
 
