@@ -14,6 +14,10 @@
 #
 # Environment: RANKS="1 2 3" for mesh; TEST_TIMEOUT, seconds for one program;
 # CK_RUN_SUITE=vof runs one suite only.
+#
+# A program that runs out of time, as on a busy machine, or one of whose tests
+# does, says "timed out" and is run once more with RETRY times as long; if that
+# does not do either it has failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
@@ -22,6 +26,7 @@ shift
 passed=0
 failed=0
 limit=${TEST_TIMEOUT:-300}
+RETRY=3
 output=$(mktemp)
 trap 'rm -f "$output"' EXIT
 
@@ -32,6 +37,33 @@ export CK_DEFAULT_TIMEOUT=${CK_DEFAULT_TIMEOUT:-60}
 export ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS:-}
 export UBSAN_OPTIONS=print_stacktrace=1:${UBSAN_OPTIONS:-}
 
+# has_timed_out STATUS: the program, a test of Check, or what a script started
+has_timed_out() {
+  [ "$1" -eq 124 ] && return
+  [ "$1" -ne 0 ] &&
+    grep -qE 'Test timeout expired|exit status 124' "$output"
+}
+
+# in_time NAME COMMAND...: runs it into $output, once more if it times out;
+# returns its status
+in_time() {
+  local name=$1 status begin=$SECONDS
+  shift
+  "$@" > "$output" 2>&1
+  status=$?
+  has_timed_out $status || return $status
+  printf '%-28s timed out after %d s; once more, with %d times as long\n' \
+    "$name" $((SECONDS - begin)) "$RETRY"
+  limit=$((RETRY * limit)) \
+    CK_DEFAULT_TIMEOUT=$((RETRY * CK_DEFAULT_TIMEOUT)) \
+    TIME_FACTOR=$RETRY "$@" > "$output" 2>&1
+}
+
+# limited COMMAND...: ended after $limit seconds
+limited() {
+  timeout "$limit" "$@"
+}
+
 # report NAME STATUS PASSED FAILED: one line, and the output if it failed
 report() {
   local name=$1 status=$2 good=$3 bad=$4
@@ -39,9 +71,9 @@ report() {
   [ "$status" -ne 0 ] && [ "$bad" -eq 0 ] && bad=1
   passed=$((passed + good))
   failed=$((failed + bad))
-  printf '%-28s %4d passed, %d failed\n' "$name" "$good" "$bad"
+  printf '%-28s %4d passed, %d failed%s\n' "$name" "$good" "$bad" \
+    "$(has_timed_out "$status" && echo ', timed out')"
   [ "$bad" -eq 0 ] && return
-  [ "$status" -eq 124 ] && echo "  timed out after $limit s"
   sed 's/^/  /' "$output" | tail -n 60
 }
 
@@ -49,7 +81,7 @@ report() {
 run_suite() {
   local name=$1 status counts
   shift
-  timeout "$limit" "$@" > "$output" 2>&1
+  in_time "$name" limited "$@"
   status=$?
   counts=$(sed -n \
     's/^[0-9]*%: Checks: \([0-9]*\), Failures: \([0-9]*\), Errors: \([0-9]*\)$/\1 \2 \3/p' \
@@ -63,11 +95,8 @@ run_suite() {
 run_one() {
   local name=$1 status
   shift
-  if [ "$(type -t "$1")" = function ]; then
-    "$@" > "$output" 2>&1
-  else
-    timeout "$limit" "$@" > "$output" 2>&1
-  fi
+  [ "$(type -t "$1")" = function ] || set -- limited "$@"
+  in_time "$name" "$@"
   status=$?
   if [ "$status" -eq 77 ]; then
     printf '%-28s skipped: %s\n' "$name" "$(tail -n 1 "$output")"

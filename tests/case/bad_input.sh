@@ -7,6 +7,7 @@ build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
+limit=$((60 * ${TIME_FACTOR:-1})) # seconds for one run
 mkdir cases work
 failures=0
 
@@ -32,7 +33,7 @@ complain() {
 refuses() {
   local name=$1 pattern=$2 status
   shift 2
-  (cd work && timeout 60 "$build/talus" "$@") > output 2>&1
+  (cd work && timeout "$limit" "$build/talus" "$@") > output 2>&1
   status=$?
   [ "$status" -eq 2 ] || complain "$name: exit status $status, not 2"
   [ "$(wc -l < output)" -eq 1 ] || complain "$name: not one line"

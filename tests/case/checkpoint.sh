@@ -8,6 +8,7 @@ build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
+limit=$((60 * ${TIME_FACTOR:-1})) # seconds for one run
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 column="$root/examples/column.lua level=6 stop=2"
 failures=0
@@ -34,9 +35,9 @@ refused() {
   local status
   listing work > before
   if [ "$2" -eq 1 ]; then
-    timeout 60 "$build/talus" run $column -o work --restart > output 2>&1
+    timeout "$limit" "$build/talus" run $column -o work --restart > output 2>&1
   else
-    timeout 60 mpirun --oversubscribe -n "$2" "$build/talus2d" run $column \
+    timeout "$limit" mpirun --oversubscribe -n "$2" "$build/talus2d" run $column \
       -o work --restart > output 2>&1
   fi
   status=$?

@@ -8,6 +8,7 @@ build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
+limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 failures=0
 
@@ -21,7 +22,7 @@ complain() {
 ends() {
   local expected=$1 pattern=$2 status
   shift 2
-  timeout 120 "$build/talus" "$@" > output 2>&1
+  timeout "$limit" "$build/talus" "$@" > output 2>&1
   status=$?
   [ $status -eq "$expected" ] || complain "$*: exit status $status"
   grep -qE "$pattern" output || complain "$*: nothing matches $pattern"
@@ -93,7 +94,7 @@ import sys
 sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))
 PYTHON
 if python3 -c 'import pty' 2> /dev/null; then
-  timeout 120 python3 terminal.py "$build/talus" run \
+  timeout "$limit" python3 terminal.py "$build/talus" run \
     "$root/examples/column.lua" level=10 --max-steps 1 -o loud > output \
     < /dev/null
   grep -q 'start: [0-9]* cells, ' output || complain "a start without a word"

@@ -14,12 +14,13 @@ done
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
+limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 
 set -e
-timeout 120 "$build/talus2d" run "$root/examples/column.lua" level=7 stop=3 \
+timeout "$limit" "$build/talus2d" run "$root/examples/column.lua" level=7 stop=3 \
   times=0.66,0.95 -o column --quiet
-timeout 120 mpirun --oversubscribe -n 2 "$build/talus3d" run \
+timeout "$limit" mpirun --oversubscribe -n 2 "$build/talus3d" run \
   "$root/examples/box3d.lua" level=4 stop=0.5 -o box --quiet
 
 # Index and files agree; every cell is there; the cells fill the box.
@@ -59,7 +60,7 @@ edge=$(sed -n 's/^domain.size,\([^,]*\),.*/\1/p' box/parameters.csv)
 
 # Pictures
 for run in column box; do
-  timeout 120 "$build/talus" plot $run > output
+  timeout "$limit" "$build/talus" plot $run > output
   for name in outlines.png fields-final.png history.png film.gif; do
     grep -q "^$run/$name$" output || { echo "$run: no $name"; exit 1; }
     [ "$(wc -c < $run/$name)" -gt 5000 ] || { echo "$run/$name is small"; exit 1; }
@@ -72,9 +73,9 @@ cp -r column replaced
   --quiet > output 2>&1
 if ls replaced/*.png replaced/*.gif 2> /dev/null; then exit 1; fi
 # A strip of a layer is too narrow for a title, and its surface is level.
-timeout 120 "$build/talus" run "$root/examples/bagnold.lua" stop=1 trees=4 \
+timeout "$limit" "$build/talus" run "$root/examples/bagnold.lua" stop=1 trees=4 \
   -o layer --quiet
-timeout 120 "$build/talus" plot layer > output 2>&1
+timeout "$limit" "$build/talus" plot layer > output 2>&1
 if grep -q "^layer/outlines" output; then
   echo "a level surface was drawn as a heap"
   exit 1

@@ -8,6 +8,7 @@ build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
+limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 failures=0
 
@@ -16,7 +17,7 @@ failures=0
 once() {
   local expected=$1 pattern=$2 status
   shift 2
-  timeout 120 mpirun --oversubscribe -n 3 "$build/talus" "$@" > output 2>&1
+  timeout "$limit" mpirun --oversubscribe -n 3 "$build/talus" "$@" > output 2>&1
   status=$?
   [ $status -eq "$expected" ] || echo "$*: exit status $status, not $expected"
   [ "$(grep -cE "$pattern" output)" -eq 1 ] ||

@@ -9,6 +9,7 @@ build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
+limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 column="$root/examples/column.lua level=7 stop=2 times=0.1,0.66"
 box="$root/examples/box3d.lua level=4 stop=0.5"
@@ -25,9 +26,9 @@ talus() {
   local ranks=$1 program=$2
   shift 2
   if [ "$ranks" -eq 1 ]; then
-    timeout 120 "$build/$program" "$@" > output 2>&1
+    timeout "$limit" "$build/$program" "$@" > output 2>&1
   else
-    timeout 120 mpirun --oversubscribe -n "$ranks" "$build/$program" "$@" \
+    timeout "$limit" mpirun --oversubscribe -n "$ranks" "$build/$program" "$@" \
       > output 2>&1
   fi
 }
