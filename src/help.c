@@ -45,9 +45,10 @@ static const char RUN_HELP[] =
     "the\n"
     "same command with --restart goes on. Before the first step they end the\n"
     "program at once. Exit status:\n"
-    "  0  the run is finished\n"
-    "  2  the case or the command line is wrong\n"
-    "  3  numerical failure\n"
+    "  0  the run is finished: at output.stop, or at rest\n"
+    "  2  the case or the command line is wrong, or the case too large for the\n"
+    "     memory that the job may use\n"
+    "  3  numerical failure, or steps with which the run would never end\n"
     "  4  memory, disk or MPI\n"
     "  5  stopped before its end, by a signal, --max-steps or --max-walltime\n"
     "mpirun hands these on (with words of its own that a process ended so), "
@@ -62,8 +63,9 @@ static const char CHECK_HELP[] =
     "Reads the case as `talus run` would, says what is wrong with it, and\n"
     "prints every parameter in use: key = value, unit, meaning, and whether\n"
     "it is a default or from the command line; then how much of a side each\n"
-    "patch of boundary.patches covers. Nothing is computed or\n"
-    "written. `talus help case` lists the keys of a case.\n";
+    "patch of boundary.patches covers, and about how many cells and how much\n"
+    "memory the start will take. Nothing is computed or written. `talus help\n"
+    "case` lists the keys of a case.\n";
 
 static const char INFO_HELP[] =
     "talus info DIR|FILE\n"

@@ -131,11 +131,20 @@ install() {
     fi
   fi
   have apt-get || return 1
-  echo "installing with apt-get: ${packages[*]}"
+  echo "installing with apt-get, which may take minutes: ${packages[*]}"
+  echo "  reading the lists of packages ..."
   "${as[@]}" apt-get update -qq &&
-    "${as[@]}" env DEBIAN_FRONTEND=noninteractive \
-      apt-get install -y -qq --no-install-recommends "${packages[@]}" \
-      > /dev/null
+    "${as[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C \
+      apt-get install -y -q --no-install-recommends "${packages[@]}" 2>&1 |
+    show_progress
+  return "${PIPESTATUS[0]}"
+}
+
+# What apt-get fetches and sets up, a line each, and what is wrong.
+show_progress() {
+  sed -u -n -e '/^Need to get /s/^/  /p' \
+    -e 's/^Get:[0-9]* [^ ]* [^ ]* [^ ]* \([^ ]*\) .*\[\(.*\)\]$/  got \1, \2/p' \
+    -e '/^Setting up /s/^/  /p' -e '/^[EW]: /p'
 }
 
 find_all "$@"

@@ -3,6 +3,7 @@
 # Whatever is wrong with a case or a command line gives one message that says
 # what and where, exit status 2, and leaves no file. Usage: bad_input.sh BUILD
 set -u
+. "$(dirname "$0")/common.bash"
 build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
@@ -33,8 +34,9 @@ complain() {
 refuses() {
   local name=$1 pattern=$2 status
   shift 2
-  (cd work && timeout "$limit" "$build/talus" "$@") > output 2>&1
+  (cd work && timeout "$limit" "$build/talus" "$@") > all 2>&1
   status=$?
+  own_words < all > output
   [ "$status" -eq 2 ] || complain "$name: exit status $status, not 2"
   [ "$(wc -l < output)" -eq 1 ] || complain "$name: not one line"
   grep -qE "^talus: error: .*$pattern" output ||

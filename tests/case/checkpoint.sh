@@ -3,13 +3,13 @@
 # --restart refuses a checkpoint that is not what was written, says what is
 # wrong with it, and touches nothing. Usage: checkpoint.sh BUILD
 set -u
+. "$(dirname "$0")/common.bash"
 root=$(pwd)
 build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
 limit=$((60 * ${TIME_FACTOR:-1})) # seconds for one run
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 column="$root/examples/column.lua level=6 stop=2"
 failures=0
 

@@ -3,13 +3,13 @@
 # How a run ends by itself: at rest, as its steps become too short, as there is
 # no memory for it; and that it is heard of before. Usage: ends.sh BUILD
 set -u
+. "$(dirname "$0")/common.bash"
 root=$(pwd)
 build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
 limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 failures=0
 
 complain() {

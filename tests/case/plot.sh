@@ -3,6 +3,7 @@
 # Snapshots are what their XDMF index says, pictures and film are made, and
 # outlines are compared as documented. Usage: plot.sh BUILD
 set -u
+. "$(dirname "$0")/common.bash"
 root=$(pwd)
 build=$(cd "$1" && pwd) || exit 1
 export TALUS_TOOLS=$root/tools
@@ -15,7 +16,6 @@ directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
 limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 
 set -e
 timeout "$limit" "$build/talus2d" run "$root/examples/column.lua" level=7 stop=3 \

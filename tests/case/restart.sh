@@ -4,13 +4,13 @@
 # checkpoint that does not fit is refused; a full disk costs no checkpoint.
 # Usage: restart.sh BUILD
 set -u
+. "$(dirname "$0")/common.bash"
 root=$(pwd)
 build=$(cd "$1" && pwd) || exit 1
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
 limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 column="$root/examples/column.lua level=7 stop=2 times=0.1,0.66"
 box="$root/examples/box3d.lua level=4 stop=0.5"
 failures=0
@@ -102,7 +102,7 @@ for n in 1 3; do
 done
 cp -r parts-1 again
 must 1 talus2d run $column -o again --quiet --restart stop=2.5
-[ "$(cat output)" = "talus: restart with stop = 2.5 (was 2)" ] ||
+[ "$(own_words < output)" = "talus: restart with stop = 2.5 (was 2)" ] ||
   complain "another stop"
 rm -r again
 cp -r parts-1 again
