@@ -14,6 +14,9 @@
 #include "talus/remap.h"
 #include "talus/simulation.h"
 
+/* Cells by which a criterion is widened before a leaf may be merged. */
+enum { HYSTERESIS = ADAPT_HYSTERESIS };
+
 static bool is_surface(double c) {
   return c > PROPERTIES_GAS && c < 1 - PROPERTIES_GAS;
 }
@@ -77,7 +80,7 @@ static void want_surface(struct simulation *sim,
   double *mark = sim->cell[0]->v;
   const int width = (int)ceil(criterion->width);
   mark_surface(mesh, sim->c->v, mark);
-  for (int k = 0; k <= width + ADAPT_HYSTERESIS; k++) {
+  for (int k = 0; k <= width + HYSTERESIS; k++) {
     if (k > 0) mesh_spread(mesh, mark);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       if (mark[i] > 0) {

@@ -8,6 +8,7 @@
 #include "talus/memory.h"
 #include "talus/mesh.h"
 #include "talus/minmax.h"
+#include "talus/openings.h"
 #include "talus/params.h"
 
 enum {
@@ -147,6 +148,8 @@ static bool is_divided(const struct walk *walk, const struct cell *cell) {
   const struct params *params = walk->params;
   if (walk->level >= params->level_max) return false;
   if (walk->level < params->level_min || params->ncriteria == 0) return true;
+  if (openings_level_at(params, cell->x, walk->level) > walk->level)
+    return true;
   for (int k = 0; k < params->ncriteria; k++)
     if (wants(walk, cell, &params->criterion[k])) return true;
   return false;

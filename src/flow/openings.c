@@ -145,14 +145,17 @@ static bool is_divided(const struct params *params) {
 }
 
 int openings_level(const struct simulation *sim, int32_t i) {
-  const struct params *params = sim->params;
+  return openings_level_at(sim->params, sim->mesh->x[i], sim->mesh->level[i]);
+}
+
+int openings_level_at(const struct params *params, const double centre[DIM],
+                      int level) {
   if (!is_divided(params)) return 0;
-  const double h = sim->mesh->h[i];
-  const int level = sim->mesh->level[i];
+  const double h = ldexp(params->size, -level);
   double x[3] = {0}, parent[3] = {0};
   int wanted = 0;
   for (int d = 0; d < DIM; d++) {
-    x[d] = sim->mesh->x[i][d];
+    x[d] = centre[d];
     const double place = floor((x[d] - params->origin[d]) / (2 * h));
     parent[d] = params->origin[d] + 2 * h * (place + 0.5);
   }
