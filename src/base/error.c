@@ -11,6 +11,7 @@
 
 #include "talus/log.h"
 #include "talus/memory.h"
+#include "talus/signals.h"
 
 enum { MESSAGE_LENGTH = 4096 };
 
@@ -141,6 +142,7 @@ void base_check_failed(const char *file, int line, const char *function,
 /* Last words in good order, of rank 0, and the end. */
 static _Noreturn void end_in_order(int status, const char *format,
                                    va_list arguments) {
+  signals_remember(); /* mpirun ends the others as soon as one has gone */
   if (rank == 0) {
     char message[MESSAGE_LENGTH];
     vsnprintf(message, sizeof message, format, arguments);
