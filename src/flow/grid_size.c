@@ -121,11 +121,20 @@ static bool wants_velocity(const struct walk *walk, const struct cell *cell,
   return false;
 }
 
+/* Is there something in the cell of what the criterion is for? */
+static bool is_meant(const struct walk *walk, const struct cell *cell,
+                     const struct criterion *criterion) {
+  bool grains, gas;
+  if (criterion->only == CRITERION_BOTH) return true;
+  look_for_grains(walk, cell, reach(walk, criterion->level, 0), &grains, &gas);
+  return criterion->only == CRITERION_GRAINS ? grains : gas;
+}
+
 static bool wants(const struct walk *walk, const struct cell *cell,
                   const struct criterion *criterion) {
   bool some, others;
   const int finest = criterion->level;
-  if (walk->level >= finest) return false;
+  if (walk->level >= finest || !is_meant(walk, cell, criterion)) return false;
   switch (criterion->type) {
     case CRITERION_INTERFACE:
       look_for_grains(
