@@ -163,6 +163,7 @@ static void check_grains(const struct run *run, double volume) {
   static const char *const text =
       "grains.shape is positive nowhere: there are no grains";
   if (run->params->single_phase || volume > 0 || base_rank() != 0) return;
+  if (params_bring_grains(run->params)) return;
   fprintf(stderr, "talus: warning: %s\n", text);
   log_info("warning: %s", text);
 }

@@ -166,4 +166,15 @@ struct params {
   double checkpoint_every; /* wall-clock seconds; 0: only at the end */
 };
 
+/* Does an inflow carry grains into the box? */
+static inline bool params_bring_grains(const struct params *params) {
+  for (int b = 0; b < params->nboundaries; b++) {
+    const struct boundary *boundary = &params->boundary[b];
+    if (boundary->type == BOUNDARY_INFLOW && boundary->fraction > 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
 #endif

@@ -144,6 +144,10 @@ static void check_grid(struct case_file *file) {
     read_fail_at(file, "domain.level_min",
                  "domain.level_min = %d is above domain.level = %d",
                  params->level_min, params->level_max);
+  if (params->opening_level > params->level_max)
+    read_fail_at(file, "adapt.opening_level",
+                 "adapt.opening_level = %d is above domain.level = %d",
+                 params->opening_level, params->level_max);
   double ntrees = 1;
   for (int d = 0; d < params->dimension; d++) ntrees *= params->trees[d];
   if (ntrees > CASE_MAX_TREES)

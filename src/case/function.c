@@ -180,6 +180,7 @@ bool case_finds_grains(const struct case_file *file) {
   const int n = params->dimension == 2 ? 257 : 41;
   const int npoints = params->dimension == 2 ? n * n : n * n * n;
   if (params->shape.eval == NULL) return true; /* they fill the box */
+  if (params_bring_grains(params)) return true;
   for (int i = 0; i < npoints; i++) {
     double x[3] = {0};
     try_point(params, i, n, x);
