@@ -52,7 +52,8 @@ static uint32_t list_inflows(const struct params *params) {
 static _Noreturn void fail_narrow(struct case_file *file, int side, int b) {
   const struct params *params = &file->params;
   const double covered = side_map_covered(file->side[side].map)[b];
-  const double width = params->dimension == 2 ? covered : sqrt(covered);
+  /* of a slot; of a disc the diagonal of a face has to fit in */
+  const double width = params->dimension == 2 ? covered : 0.8 * sqrt(covered);
   const double level = ceil(log2(params->size / width) + 1e-9);
   char path[PATH_LENGTH], advice[VALUE_LENGTH] = "";
   path_join(path, "boundary.patches", params->boundary[b].name);
