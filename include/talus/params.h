@@ -49,6 +49,9 @@ struct boundary {
   double fraction; /* volume fraction of grains carried in by an inflow */
 };
 
+/* Where boundary.pressure_level holds, see pressure_level.h */
+enum pressure_at { PRESSURE_AT_BOX, PRESSURE_AT_GAS, PRESSURE_AT_POINT };
+
 struct phase {
   double density; /* kg/m^3, > 0 */
   struct rheology rheology;
@@ -136,8 +139,10 @@ struct params {
   struct function velocity[3]; /* initial velocity, absent: rest */
   struct tracer tracer[PARAMS_MAX_TRACERS]; /* passive VOF tracers */
   int ntracers;
-  bool pressure_level_given; /* needed when no boundary sets the pressure */
-  double pressure_level;     /* mean pressure over the box */
+  bool pressure_level_given;    /* by the case */
+  double pressure_level;        /* Pa, when no boundary sets the pressure */
+  enum pressure_at pressure_at; /* where it holds */
+  double pressure_point[3];     /* m, PRESSURE_AT_POINT */
 
   /* Numerics */
   double cfl;                /* 1/2 sum |u_f| A dt / V, in (0, 1] */

@@ -199,22 +199,6 @@ static void check_pressure_twice(struct case_file *file) {
                file->params.pressure_level, path);
 }
 
-/* The closures need the pressure itself, not only its gradient. */
-static void check_pressure_level(struct case_file *file) {
-  struct params *params = &file->params;
-  char path[PATH_LENGTH];
-  if (params->pressure_level_given) return;
-  if (patches_find_outflow(file, path)) return;
-  if (!closure_depends_on_pressure(&params->grains.rheology) &&
-      (params->single_phase ||
-       !closure_depends_on_pressure(&params->gas.rheology)))
-    return;
-  read_fail_at(file, "boundary",
-               "no boundary sets the pressure, and the viscosity depends on "
-               "it: add boundary.pressure_level, the mean pressure of the "
-               "box, or make a side {\"outflow\", pressure = ...}");
-}
-
 void boundary_check(struct case_file *file) {
   struct params *params = &file->params;
   bool chosen = false;
@@ -229,5 +213,4 @@ void boundary_check(struct case_file *file) {
   check_periodic(file);
   patches_map(file);
   check_pressure_twice(file);
-  check_pressure_level(file);
 }

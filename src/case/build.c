@@ -80,6 +80,9 @@ static void read_key(struct case_file *file, const struct key *key) {
     case KEY_PATCHES:
       boundary_read_patches(file);
       break;
+    case KEY_PRESSURE:
+      pressure_read(file, key);
+      break;
     case KEY_TRACERS:
       initial_read_tracers(file, key);
       break;
@@ -189,12 +192,10 @@ void build_params(struct case_file *file) {
     else
       read_key(file, key);
   }
-  push_path(file, "boundary.pressure_level");
-  file->params.pressure_level_given = !lua_isnil(L, -1);
-  lua_pop(L, 1);
   check_phases(file);
   choose_permeable(&file->params);
   check_walls(file);
   check_grid(file);
   boundary_check(file);
+  pressure_check(file);
 }

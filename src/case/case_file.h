@@ -176,6 +176,10 @@ void patches_destroy(struct case_file *file);
  * there is none. */
 bool patches_find_outflow(const struct case_file *file, char path[PATH_LENGTH]);
 
+/* pressure.c: boundary.pressure_level, and whether it is needed. */
+void pressure_read(struct case_file *file, const struct key *key);
+void pressure_check(struct case_file *file);
+
 /* criteria.c */
 void criteria_read(struct case_file *file, const struct key *key);
 

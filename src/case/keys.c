@@ -93,9 +93,14 @@ static const struct key KEYS[] = {
      .help = "upper y in 2D, upper z in 3D"},
     {"boundary.patches", KEY_PATCHES, OPTIONAL, .unit = "",
      .help = "boundaries by name, for sides that are functions"},
-    {"boundary.pressure_level", KEY_NUMBER, ANY, OPTIONAL, .unit = "Pa",
+    {"boundary.pressure_level", KEY_PRESSURE, ANY, OPTIONAL, .unit = "Pa",
      .offset = AT(pressure_level),
-     .help = "mean pressure of the box, needed when no boundary sets any"},
+     .help = "pressure when no boundary sets any: {0, at = \"gas\"}, mean "
+             "over the gas, its own weight below the top of the box taken "
+             "off, the default if there is gas, or {0, at = {x, y}}, at a "
+             "point; a plain number is the mean over the box and "
+             "contains the weight of the grains, which drifts as they fall, "
+             "so that friction does too"},
 
     {"adapt", KEY_CRITERIA, OPTIONAL, .unit = "",
      .help = "list of at most 8 criteria, the finest wins; without it the "
@@ -319,6 +324,10 @@ void keys_allowed(const struct key *key, int dimension, size_t size,
     case KEY_SIDE:
       snprintf(text, size,
                "\"type\", {\"type\", option = value} or a function(%s)", at);
+      break;
+    case KEY_PRESSURE:
+      snprintf(text, size,
+               "a number, {number, at = \"gas\"} or {number, at = {%s}}", at);
       break;
     case KEY_CRITERIA:
       snprintf(text, size, "a list of {\"criterion\", option = value}");

@@ -24,6 +24,7 @@ enum key_type {
   KEY_CLOSURE,  /* {"name", key = value, ...} */
   KEY_SIDE,     /* "type", {"type", option = value} or a function */
   KEY_TRACERS,  /* names of the user's choice = level sets */
+  KEY_PRESSURE, /* number, or {number, at = "gas" or a point} */
   KEY_PATCHES,  /* names of the user's choice = boundaries */
   KEY_CRITERIA, /* list of "name" or {"name", option = value} */
   KEY_EXPECT,   /* column of series.csv = {least, most} */

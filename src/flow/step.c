@@ -24,6 +24,7 @@
 #include "talus/minmax.h"
 #include "talus/percolation.h"
 #include "talus/poisson.h"
+#include "talus/pressure_level.h"
 #include "talus/projection.h"
 #include "talus/properties.h"
 #include "talus/side_walls.h"
@@ -345,21 +346,6 @@ static void add_wall_work(struct simulation *sim, double dt) {
   sim->energy.dissipated += dt * side_walls_power(sim->mesh, sim->drag->v, u);
 }
 
-/* Where no boundary sets the pressure its mean is the case's: the closures
- * need an absolute one. */
-static void anchor_pressure(struct simulation *sim) {
-  const struct mesh *mesh = sim->mesh;
-  double sum[2] = {0};
-  if (sim->pressure_set) return;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    sum[0] += sim->p->v[i] * mesh_volume(mesh, i);
-    sum[1] += mesh_volume(mesh, i);
-  }
-  const double mean = mesh_sum(mesh, sum[0]) / mesh_sum(mesh, sum[1]);
-  const double shift = sim->params->pressure_level - mean;
-  for (int32_t i = 0; i < mesh->nleaves; i++) sim->p->v[i] += shift;
-}
-
 /* Room for the new u_f. The first takes that of the predictor, which has done
  * its work, and leaves the last step's there, should this one fail (u_f->old).
  * A repetition overwrites the new one, and keeps it to be compared. */
@@ -384,7 +370,7 @@ static void project(struct simulation *sim, double dt, int k) {
   field_fill_many(mesh, DIM, sim->u);
   projection_face_velocity(&projection, dt, u, sim->u_f->v);
   sim->pressure = projection_project(&projection, dt, sim->u_f->v, sim->p->v);
-  anchor_pressure(sim);
+  pressure_level_set(sim);
   projection_acceleration(&projection, sim->face[1]->v, g);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * g[e][i];
@@ -563,7 +549,7 @@ static struct solve_stats static_pressure(struct simulation *sim) {
   projection_face_velocity(&projection, 1, rest, sim->face[1]->v);
   struct solve_stats stats =
       projection_project(&projection, 1, sim->face[1]->v, sim->p->v);
-  anchor_pressure(sim);
+  pressure_level_set(sim);
   projection_acceleration(&projection, sim->face[1]->v, g);
   return stats;
 }

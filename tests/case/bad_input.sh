@@ -139,8 +139,34 @@ bad_edit boundary 'boundary.lua:7: boundary.left = "symetry": .*symmetry' \
   'left = "symmetry"' 'left = "symetry"'
 bad_edit periodic 'periodic.lua:7: .*right must be "periodic" too' \
   'left = "symmetry"' 'left = "periodic"'
-bad_edit no_pressure 'no_pressure.lua:7: .*add boundary.pressure_level' \
-  '{ "outflow", pressure = 0 }' '"no_slip"'
+bad_case no_pressure 'no_pressure.lua:4: .*add boundary.pressure_level' \
+  'return { dimension = 2, domain = { size = 1, level = 3 }, gravity = { 0, -1 },
+  grains = { density = 1, rheology = { "coulomb", mu_s = 1 } },
+  output = { stop = 1 },
+  boundary = { left = "slip", right = "slip", bottom = "slip", top = "slip" } }'
+outlet='{ "outflow", pressure = 0 }'
+bad_edit pressure_text \
+  'pressure_text.lua:8: boundary.pressure_level = "gas": .*at = "gas"' \
+  "$outlet" '"no_slip", pressure_level = "gas"'
+bad_edit pressure_nan 'pressure_nan.lua:8: boundary.pressure_level = .*nan' \
+  "$outlet" '"no_slip", pressure_level = { 0/0, at = "gas" }'
+bad_edit pressure_alone 'pressure_alone.lua:8: boundary.pressure_level.at = nil' \
+  "$outlet" '"no_slip", pressure_level = { 0 }'
+bad_edit pressure_key 'pressure_key.lua:8: unknown key .*did you mean .at' \
+  "$outlet" '"no_slip", pressure_level = { 0, att = "gas" }'
+bad_edit pressure_place \
+  'pressure_place.lua:8: boundary.pressure_level.at = "gass": .*"gas"' \
+  "$outlet" '"no_slip", pressure_level = { 0, at = "gass" }'
+bad_edit pressure_axes 'pressure_axes.lua:8: .*2 numbers are needed, 3 given' \
+  "$outlet" '"no_slip", pressure_level = { 0, at = { 1, 1, 1 } }'
+bad_edit pressure_outside \
+  'pressure_outside.lua:8: .*outside the box: its y is 4.1, allowed is 0 to 4' \
+  "$outlet" '"no_slip", pressure_level = { 0, at = { 1, 4.1 } }'
+bad_case pressure_gas 'pressure_gas.lua:4: .*there is no gas' \
+  'return { dimension = 2, domain = { size = 1, level = 3 }, gravity = { 0, -1 },
+  grains = { density = 1, rheology = { "coulomb", mu_s = 1 } },
+  output = { stop = 1 }, boundary = { left = "slip", right = "slip",
+    bottom = "slip", top = "slip", pressure_level = { 0, at = "gas" } } }'
 bad_edit no_side 'no_side.lua:7: boundary.left is missing' \
   'left = "symmetry", ' ''
 bad_edit patch 'patch.lua:8: boundary.top.*"hole", which boundary.patches' \

@@ -264,6 +264,39 @@ START_TEST(pressure_level_is_enough) {
 }
 END_TEST
 
+/* What follows, where the level then holds, and its value. */
+static const struct {
+  const char *text;
+  enum pressure_at at;
+  double level;
+} PRESSURES[] = {
+    {"", PRESSURE_AT_GAS, 0},
+    {", pressure_level = 5", PRESSURE_AT_BOX, 5},
+    {", pressure_level = { 5, at = 'box' }", PRESSURE_AT_BOX, 5},
+    {", pressure_level = { 5, at = 'gas' }", PRESSURE_AT_GAS, 5},
+    {", pressure_level = { -2, at = { 4, 0.5 } }", PRESSURE_AT_POINT, -2}};
+START_TEST(closed_box_takes_its_pressure_somewhere) {
+  char text[2048], printed_text[TEXT_LENGTH];
+  snprintf(text, sizeof text,
+           "return { " DOMAIN GRAVITY PHASES OUTPUT
+           "boundary = { left = 'slip', right = 'slip', bottom = 'no_slip',\n"
+           "  top = 'slip'%s } }",
+           PRESSURES[_i].text);
+  struct case_file *file = load(text);
+  const struct params *params = case_params(file);
+  ck_assert_int_eq(params->pressure_at, PRESSURES[_i].at);
+  ck_assert_double_eq(params->pressure_level, PRESSURES[_i].level);
+  ck_assert_int_eq(params->pressure_level_given, _i > 0);
+  if (params->pressure_at == PRESSURE_AT_POINT) {
+    ck_assert_double_eq(params->pressure_point[0], 4);
+    ck_assert_double_eq(params->pressure_point[1], 0.5);
+  }
+  printed(file, case_write_parameters, printed_text);
+  ck_assert_ptr_nonnull(strstr(printed_text, "boundary.pressure_level.at,"));
+  case_destroy(file);
+}
+END_TEST
+
 START_TEST(criteria_take_level_of_domain_by_default) {
   struct case_file *file = load(
       "param('both', 3) -- named like the default of a choice\n"
@@ -525,6 +558,8 @@ static TCase *files(void) {
   tcase_add_exit_test(tcase, friction_without_pressure_level_is_refused,
                       EXIT_USER);
   tcase_add_test(tcase, pressure_level_is_enough);
+  tcase_add_loop_test(tcase, closed_box_takes_its_pressure_somewhere, 0,
+                      COUNT(PRESSURES));
   tcase_add_loop_test(tcase, limiter_is_read_by_name, 0, 3);
   tcase_add_loop_exit_test(tcase, other_limiters_are_refused, EXIT_USER, 0, 2);
   tcase_add_test(tcase, criteria_take_level_of_domain_by_default);
