@@ -12,7 +12,12 @@
  * coefficients that differ by 1e4 or more stop the convergence (w_i^2 =
  * 1 / A_ii: 15 % fewer iterations in a collapse with eta_max = 1e4, but discs
  * of contrast 1e6 do not converge). The test is on max |r_i / rho_i|; a guess
- * must pass it a million times better to need no iteration. Where an iteration
+ * must pass it a million times better to need no iteration, and one that passes
+ * it, or nearly, is made a thousand times better: weights let max |r/rho| of a
+ * light phase grow while <r, r> falls, and what one iteration leaves, always
+ * below the tolerance, grew tenfold from step to step where density jumps by
+ * 1e5 (mu(I) at rest, gas 1e6 times lighter: 4e-6 m/s, now 2e-10; a collapse
+ * takes 522 pressure iterations in place of 521). Where an iteration
  * gains little, r is made orthogonal to all q_j again: what rounding leaves of
  * it there is out of reach of new directions.
  *

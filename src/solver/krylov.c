@@ -8,10 +8,15 @@
 
 #include "talus/error.h"
 #include "talus/memory.h"
+#include "talus/minmax.h"
 
 /* A guess passes only at this part of the tolerance: errors just below it, of
  * one sign, would add up from step to step. */
 #define KRYLOV_GUESS 1e-6
+/* A solve that begins below NEAR times its tolerance ends below that part of
+ * what it began with. */
+#define KRYLOV_NEAR 10
+#define KRYLOV_LEFT 1e-3
 /* Floats are too short where they may lose this part of the residual that was
  * there at first: it has grown tenfold or more. */
 #define KRYLOV_GROWTH 1e-6
@@ -371,6 +376,18 @@ static bool iterate(const struct krylov_system *s, struct krylov_space *space,
   return true;
 }
 
+/* Is r as small as it must be (krylov.h)? Where it began near the tolerance,
+ * round-off that two iterations cannot halve is small enough. */
+static bool is_done(const struct progress *p, const struct solve_stats *stats,
+                    double tolerance) {
+  const double size = p->size + p->lost, guess = KRYLOV_GUESS * tolerance;
+  const double before = stats->residual_before;
+  if (stats->iterations == 0) return size <= guess;
+  if (size > tolerance) return false;
+  return before > KRYLOV_NEAR * tolerance || p->waited >= 2 ||
+         size <= max2(guess, KRYLOV_LEFT * before);
+}
+
 struct solve_stats krylov_solve(const struct krylov_system *s,
                                 struct krylov_space *space, double tolerance,
                                 int max_iterations, double *r,
@@ -381,10 +398,9 @@ struct solve_stats krylov_solve(const struct krylov_system *s,
   stats.residual_before = p.size;
   space_open(space, (int64_t)s->n * s->nparts);
   for (;;) {
-    const double enough = stats.iterations > 0 ? 1 : KRYLOV_GUESS;
     stats.residual_after = p.size;
     if (!isfinite(p.size)) return stats;
-    if (p.size + p.lost <= enough * tolerance) {
+    if (is_done(&p, &stats, tolerance)) {
       stats.status = SOLVE_CONVERGED;
       break;
     }
@@ -400,6 +416,9 @@ struct solve_stats krylov_solve(const struct krylov_system *s,
     } else {
       p.waited = KRYLOV_PATIENCE;
     }
+  }
+  if (stats.iterations > 0 && p.size + p.lost <= tolerance) {
+    stats.status = SOLVE_CONVERGED;
   }
   restart(s, space, &p, x);
   return stats;
