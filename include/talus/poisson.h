@@ -5,7 +5,7 @@
  * p lives at cell centres, alpha at faces. The flux through a face,
  *   F = alpha_f (p_upper - p_lower) / h,
  * uses the two nodes of the face's own level (face_node): on a coarse side
- * the linearly interpolated virtual child, at a wall the boundary node. It is
+ * the interpolated virtual child, at a wall the boundary node. It is
  * computed once per face, coarse sides take the mean, so
  *   sum_i V_i (div F)_i = net flux through the boundary
  * to round-off. Second order, exact for linear p across levels (constant
@@ -25,6 +25,8 @@
 
 /* Solve. Collective.
  *   alpha_f  [nfaces_all] valid on all faces, >= 0 (0 on closed walls)
+ *   rho      [ncells] 1/alpha of cells, filled: by it p is interpolated to the
+ *            children of coarse leaves (mesh_fill_potential); NULL: as if even
  *   rhs      [nleaves] density, not integrated
  *   bc       [MESH_MAX_PATCHES] of p
  *   tolerance  on max |rhs - div(alpha grad p)|
@@ -33,9 +35,10 @@
  * best iterate. */
 struct solve_stats poisson_solve(const struct mesh *mesh,
                                  struct hierarchy *hierarchy,
-                                 const double *alpha_f, const double *rhs,
-                                 const struct bc *bc, double tolerance,
-                                 int max_iterations, double *p);
+                                 const double *alpha_f, const double *rho,
+                                 const double *rhs, const struct bc *bc,
+                                 double tolerance, int max_iterations,
+                                 double *p);
 
 /* flux [nfaces_all] = alpha dp/dn on all faces; p [ncells] filled.
  * Collective. */

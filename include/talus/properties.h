@@ -28,10 +28,11 @@
  * gravity is -[rho] g.(x_S - Z) grad c with x_S on the surface, a gradient for
  * a surface at rest. So it is discretised as that of p is, over levels too:
  *   a_f = ((W_1 - W_0) - [rho] g.(x_S - Z) (c_1 - c_0)) / (rho_f h)
- * from the nodes of the face, filled as p is; x_S is the mean over its leaves
- * of the centroids of their planes. Away from the surface a_f = g_d. A flat
- * bed at any angle with its gravity then rests to round-off. Gravity along a
- * periodic axis has no potential; it is added as it is.
+ * from the nodes of the face, W and c filled as p is (mesh_fill_potential); x_S
+ * is the mean over its leaves of the centroids of their planes. Away from the
+ * surface a_f = g_d. A flat bed at any angle with its gravity then rests to
+ * round-off. Gravity along a periodic axis has no potential; it is added as it
+ * is.
  */
 #ifndef TALUS_PROPERTIES_H
 #define TALUS_PROPERTIES_H
@@ -56,6 +57,7 @@ struct balance {
   double gravity[DIM]; /* along axes that are not periodic, m/s^2 */
   double along[DIM];   /* along periodic axes */
   double origin[DIM];  /* Z, anywhere in the box */
+  const double *rho;   /* [ncells] filled, by which p is; NULL: as if even */
   /* scratch [ncells]: W; g.(x_S - Z) and 1 in leaves with a surface, else 0;
    * the same with the leaves next to them */
   double *weight, *level, *count, *near_level, *near_count;

@@ -248,7 +248,7 @@ static void solve_velocity(struct simulation *sim, double most, double *psi,
   }
   mesh_fill_faces(mesh, 1, &alpha);
   memset(psi, 0, (size_t)mesh->ncells * sizeof *psi);
-  poisson_solve(mesh, sim->hierarchy, alpha, sim->source->v, bc,
+  poisson_solve(mesh, sim->hierarchy, alpha, NULL, sim->source->v, bc,
                 TOLERANCE * most, sim->params->max_iterations, psi);
   poisson_flux(mesh, alpha, psi, w);
 }

@@ -20,8 +20,8 @@ struct solve_stats projection_project(const struct projection *projection,
     projection->rhs[i] = div / (mesh->h[i] * dt);
   }
   struct solve_stats stats = poisson_solve(
-      mesh, projection->hierarchy, projection->alpha_f, projection->rhs,
-      projection->bc, projection->tolerance / (dt * dt),
+      mesh, projection->hierarchy, projection->alpha_f, projection->rho,
+      projection->rhs, projection->bc, projection->tolerance / (dt * dt),
       projection->max_iterations, p);
   poisson_flux(mesh, projection->alpha_f, p, projection->flux);
   for (int32_t f = 0; f < mesh->nfaces_all; f++) {

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "talus/minmax.h"
 #include "talus/params.h"
@@ -93,12 +94,14 @@ static void spread_level(const struct mesh *mesh,
   }
 }
 
+/* W and, where the level was, c, filled as p is; the level next to surfaces. */
 static void set_surface(const struct mesh *mesh, const double density[2],
                         const struct balance *balance, const double *c,
                         double *const normal[DIM], const double *plane) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[] = {neumann, neumann, neumann};
-  double *cells[] = {balance->weight, balance->level, balance->count};
+  double *cells[] = {balance->level, balance->count};
+  double *potentials[] = {balance->weight, balance->level};
   double *ghosts[] = {balance->near_level, balance->near_count};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double weight = 0;
@@ -110,15 +113,18 @@ static void set_surface(const struct mesh *mesh, const double density[2],
     balance->count[i] = surface_level(mesh, balance->gravity, balance->origin,
                                       c, normal, plane, i, &balance->level[i]);
   }
-  mesh_fill(mesh, 3, cells, bc, true);
+  mesh_fill(mesh, 2, cells, bc, true);
   spread_level(mesh, balance);
   mesh_fill_ghosts(mesh, 2, ghosts);
+  memcpy(balance->level, c, (size_t)mesh->nleaves * sizeof *c);
+  mesh_fill_potential(mesh, balance->rho, 2, potentials, bc, true);
 }
 
 void properties_gravity(const struct mesh *mesh, const double density[2],
                         const struct balance *balance, const double *c,
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f) {
+  const double *fraction = balance->level;
   set_surface(mesh, density, balance, c, normal, plane);
   for (int d = 0; d < DIM; d++) {
     const double along = balance->along[d];
@@ -128,7 +134,8 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
         gravity_f[f] = alpha_f[f] > 0 ? balance->gravity[d] + along : 0;
         continue;
       }
-      const double jump = (density[0] - density[1]) * (c[node[1]] - c[node[0]]);
+      const double jump =
+          (density[0] - density[1]) * (fraction[node[1]] - fraction[node[0]]);
       double level = 0, count = 0;
       for (int side = 0; side < 2 && jump != 0; side++) {
         level += balance->near_level[leaf[side]];

@@ -69,7 +69,8 @@ static struct projection projection_of(struct simulation *sim) {
 /* Stage 4: density, gravity and viscosity from c^{n+1/2}, D^n, p^{n-1/2}. */
 static struct balance balance_of(const struct simulation *sim) {
   const struct params *params = sim->params;
-  struct balance balance = {.weight = sim->cell[0]->v,
+  struct balance balance = {.rho = sim->rho->v,
+                            .weight = sim->cell[0]->v,
                             .level = sim->cell[1]->v,
                             .count = sim->cell[2]->v,
                             .near_level = sim->cell[3]->v,
@@ -81,6 +82,12 @@ static struct balance balance_of(const struct simulation *sim) {
     balance.origin[d] = params->origin[d];
   }
   return balance;
+}
+
+/* p at the nodes as the pressure solve sees it. The density is filled. */
+static void fill_pressure(struct simulation *sim) {
+  const struct bc *bc = sim->p->bc;
+  mesh_fill_potential(sim->mesh, sim->rho->v, 1, &sim->p->v, &bc, false);
 }
 
 static void update_density(struct simulation *sim) {
@@ -105,7 +112,7 @@ static void update_density(struct simulation *sim) {
  */
 static void find_acceleration(struct simulation *sim, double *const g[DIM]) {
   const struct projection projection = projection_of(sim);
-  field_fill(sim->mesh, sim->p);
+  fill_pressure(sim);
   poisson_flux(sim->mesh, projection.alpha_f, sim->p->v, projection.flux);
   projection_acceleration(&projection, sim->face[1]->v, g);
 }
@@ -132,7 +139,7 @@ static void update_viscosity(struct simulation *sim,
   const struct params *params = sim->params;
   double *u[DIM], *normal[DIM];
   field_arrays(velocity, u), field_arrays(sim->normal, normal);
-  field_fill(mesh, sim->p);
+  fill_pressure(sim);
   properties_shear_rate(mesh, sim->skin, u, sim->face[0]->v);
   double *work[2] = {sim->face[1]->v, sim->face[2]->v};
   properties_viscosity(mesh, sim->time, &params->grains,

@@ -9,7 +9,7 @@
 struct context {
   const struct mesh *mesh;
   struct hierarchy *h;
-  const double *alpha_f, *rhs;
+  const double *alpha_f, *rho, *rhs;
   const struct bc *bc;
   double excess; /* taken from rhs */
 };
@@ -42,14 +42,14 @@ static void apply(void *context, float *const z[2], double *q[]) {
   const struct context *k = context;
   double *p = k->h->work_cells;
   krylov_direction(k->mesh->nleaves, 0, z, p);
-  mesh_fill(k->mesh, 1, &p, &k->bc, true);
+  mesh_fill_potential(k->mesh, k->rho, 1, &p, &k->bc, true);
   divergence(k, p, p);
   q[0] = p;
 }
 
 static void residual(void *context, double *const p[], double *r) {
   const struct context *k = context;
-  mesh_fill(k->mesh, 1, p, &k->bc, false);
+  mesh_fill_potential(k->mesh, k->rho, 1, p, &k->bc, false);
   divergence(k, p[0], r);
   for (int32_t i = 0; i < k->mesh->nleaves; i++) {
     r[i] = k->rhs[i] - k->excess - r[i];
@@ -129,11 +129,12 @@ static struct solve_stats solve_singular(const struct krylov_system *system,
 }
 
 struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
-                                 const double *alpha_f, const double *rhs,
-                                 const struct bc *bc, double tolerance,
-                                 int max_iterations, double *p) {
+                                 const double *alpha_f, const double *rho,
+                                 const double *rhs, const struct bc *bc,
+                                 double tolerance, int max_iterations,
+                                 double *p) {
   CHECK(h->revision == mesh->revision, "hierarchy of an older mesh");
-  struct context context = {mesh, h, alpha_f, rhs, bc, 0};
+  struct context context = {mesh, h, alpha_f, rho, rhs, bc, 0};
   const struct krylov_system system = {.comm = mesh->comm,
                                        .n = mesh->nleaves,
                                        .nparts = 1,
@@ -149,6 +150,6 @@ struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
       has_level(mesh, alpha_f, bc)
           ? krylov_solve(&system, h->krylov, tolerance, max_iterations, r, &p)
           : solve_singular(&system, tolerance, max_iterations, p);
-  mesh_fill(mesh, 1, &p, &bc, false);
+  mesh_fill_potential(mesh, rho, 1, &p, &bc, false);
   return stats;
 }

@@ -20,16 +20,30 @@ static void fill_averages(const struct mesh *mesh, double *v) {
   }
 }
 
-static void fill_virtuals(const struct mesh *mesh, double *v) {
+/* v[node[1]] - v[node[0]] of the two neighbours of a leaf (or the leaf itself
+ * for a missing one), as if rho were the leaf's throughout: across each face
+ * dv/rho_f is kept, rho_f the mean of both sides. */
+static double weighted_difference(const double *rho, const double *v,
+                                  int32_t leaf, const int32_t node[2]) {
+  const double here = 2 * rho[leaf];
+  return here / (rho[leaf] + rho[node[1]]) * (v[node[1]] - v[leaf]) +
+         here / (rho[leaf] + rho[node[0]]) * (v[leaf] - v[node[0]]);
+}
+
+static void fill_virtuals(const struct mesh *mesh, const double *rho,
+                          double *v) {
   for (int32_t k = 0; k < mesh->nvirtual_local; k++) {
+    const int32_t leaf = mesh->virtual_leaf[k];
     double *child = v + mesh->begin_virtual + NCHILD * k;
     double step[DIM];
     for (int d = 0; d < DIM; d++) {
       const int32_t *node = mesh->virtual_slope[k][d];
-      step[d] = mesh->virtual_weight[k][d] * (v[node[1]] - v[node[0]]);
+      const double weight = mesh->virtual_weight[k][d];
+      step[d] = rho ? weight * weighted_difference(rho, v, leaf, node)
+                    : weight * (v[node[1]] - v[node[0]]);
     }
     for (int c = 0; c < NCHILD; c++) {
-      double value = v[mesh->virtual_leaf[k]];
+      double value = v[leaf];
       for (int d = 0; d < DIM; d++) value += c >> d & 1 ? step[d] : -step[d];
       child[c] = value;
     }
@@ -91,8 +105,9 @@ void mesh_fill_ghosts(const struct mesh *mesh, int n, double *const v[]) {
   plan_run(&mesh->exchange->ghost, n, v, 1, false);
 }
 
-void mesh_fill(const struct mesh *mesh, int n, double *const v[],
-               const struct bc *const bc[], bool homogeneous) {
+static void fill(const struct mesh *mesh, const double *rho, int n,
+                 double *const v[], const struct bc *const bc[],
+                 bool homogeneous) {
   enum { MOST = 64 };
   double *group[MOST];
   CHECK(n <= MOST, "%d fields filled at once, at most %d", n, MOST);
@@ -102,12 +117,23 @@ void mesh_fill(const struct mesh *mesh, int n, double *const v[],
   }
   plan_run(&mesh->exchange->ghost, n, v, 1, false);
   plan_run(&mesh->exchange->average, n, v, 1, true);
-  for (int k = 0; k < n; k++) fill_virtuals(mesh, v[k]);
+  for (int k = 0; k < n; k++) fill_virtuals(mesh, rho, v[k]);
   plan_run(&mesh->exchange->virtual_node, n, group, NCHILD, false);
   for (int k = 0; k < n; k++) {
     fill_boundaries(mesh, v[k], bc[k], homogeneous);
     if (!homogeneous) fill_shared(mesh, v[k], bc[k]);
   }
+}
+
+void mesh_fill(const struct mesh *mesh, int n, double *const v[],
+               const struct bc *const bc[], bool homogeneous) {
+  fill(mesh, NULL, n, v, bc, homogeneous);
+}
+
+void mesh_fill_potential(const struct mesh *mesh, const double *rho, int n,
+                         double *const v[], const struct bc *const bc[],
+                         bool homogeneous) {
+  fill(mesh, rho, n, v, bc, homogeneous);
 }
 
 void mesh_fill_faces(const struct mesh *mesh, int n, double *const v[]) {

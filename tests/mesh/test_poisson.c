@@ -42,8 +42,8 @@ static struct solve solve_new(struct forest *forest,
 }
 
 static void solve_run(struct solve *s, double tolerance) {
-  s->stats = poisson_solve(s->mesh, s->hierarchy, s->alpha_f, s->rhs, s->bc,
-                           tolerance, MOST, s->p);
+  s->stats = poisson_solve(s->mesh, s->hierarchy, s->alpha_f, NULL, s->rhs,
+                           s->bc, tolerance, MOST, s->p);
 }
 
 static void solve_end(struct solve *s) {
