@@ -41,8 +41,12 @@
 --
 -- Try. a=1.42 d=0.0219 stop=4.77 and a=0.5 d=0.0168 stop=2.83 (figures 9 and 8,
 -- to 4 sqrt(H0/g)); mu_s=0.4: a stiffer heap; delta_mu=0: friction that does
--- not know the rate; eta_max=100: the heap at rest creeps about five times
--- slower (t = 12, level 8).
+-- not know the rate; eta_max=24000: a heap at rest that stays. The default is
+-- the cap of Gerris, for comparison: with it a slope at rest creeps at up to
+-- rho g sin(alpha) H0^2/(2 eta_max), tan(alpha) = mu_s, 0.6 sqrt(g L0), so do
+-- not read a deposit from it; below 1e-4 sqrt(g H0) need eta_max = 5000
+-- sin(alpha) a^1.5. Front and top at the end, level 9: 9.195, 1.300 and 9.200,
+-- 1.307, for two thirds more viscous iterations.
 
 local a = param("a", 6.26, "aspect ratio H0/L0 of the column")
 local size = param("size", 32, "edge of the box, in L0")

@@ -43,7 +43,10 @@ local a = param("a", 1.42, "aspect ratio H0/L0 of the column")
 local size = param("size", 8, "edge of the box, in L0")
 local level = param("level", 7, "finest grid: size/2^level")
 local stop = param("stop", 4, "time of the end, in sqrt(H0/g)")
-local eta_max = param("eta_max", 100, "cap on viscosity, in rho sqrt(g L0^3)")
+-- so that heaps of friction 0.33 creep at less than 1e-4 sqrt(g H0): rho g
+-- sin(alpha) H0^2/(2 eta_max), tan(alpha) = 0.33
+local eta_max = param("eta_max", 6000 * math.sin(math.atan(0.33)) * a^1.5,
+                      "cap on viscosity, in rho sqrt(g L0^3)")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 
 local rho, g = 1, 1                     -- the units

@@ -48,8 +48,9 @@ local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
 local slip = param("slip", 4 * d, "slip length of the floor, in L0; 0: rough")
--- the paper's 250 rho sqrt(g H0^3)
-local eta_max = param("eta_max", 250 * a^1.5,
+-- so that the heap at rest creeps at less than 1e-4 sqrt(g H0): rho g
+-- sin(alpha) H0^2/(2 eta_max), tan(alpha) = mu_s; the paper has 250 a^1.5
+local eta_max = param("eta_max", 6000 * math.sin(math.atan(mu_s)) * a^1.5,
                       "cap on viscosity, in rho sqrt(g L0^3)")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 local picard = param("picard", 0, "repetitions within a step")
