@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "talus/lock.h"
 #include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/signals.h"
@@ -151,6 +152,7 @@ static _Noreturn void end_in_order(int status, const char *format,
     log_info("error: %s", message);
   }
   log_close();
+  lock_release(); /* before others end, and mpirun ends all */
   if (mpi_runs()) MPI_Finalize();
   exit(status);
 }

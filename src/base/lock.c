@@ -6,7 +6,6 @@
 #include <mpi.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -125,7 +124,6 @@ static enum outcome take(const char *directory, char words[WORDS_LENGTH]) {
     write_holder(file);
     held = file;
     held_path = path;
-    atexit(lock_release);
     return outcome;
   }
   if (outcome == WITHOUT) {
