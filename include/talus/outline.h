@@ -6,17 +6,18 @@
  * a coarser leaf counts in each column it covers.
  *
  * The front. 2D: from the tallest column outwards, the first column of a height
- * <= Delta/2 ends the heap; the front lies where the line between its top and
- * the top of the column before it has the height Delta/2. The front is the x of
- * the upper end if the heap leans on the lower side of the box (which may be a
- * plane of symmetry), of the lower end if it leans on the upper side only, and
- * else of the end farther from the centre of the heap, the upper one where they
- * are level within Delta. A heap that reaches the side ends there. 3D: the same
- * walk over rings of width Delta around an axis, with the mean height of the
- * columns in each ring, gives a radius. The axis goes, for each of x and y,
- * through the lower side if the heap leans on it, else the upper one, else
- * through the centre of the heap; a direction in which the heap leans on both
- * sides does not count in the radius (a slice of a plane heap).
+ * <= h_end = min(Delta, height of the tallest)/2 ends the heap; the front lies
+ * where the line between its top and the top of the column before it has the
+ * height h_end, which is Delta/2 but for a layer thinner than a cell. The front
+ * is the x of the upper end if the heap leans on the lower side of the box
+ * (which may be a plane of symmetry), of the lower end if it leans on the upper
+ * side only, and else of the end farther from the centre of the heap, the upper
+ * one where they are level within Delta. A heap that reaches the side ends
+ * there. 3D: the same walk over rings of width Delta around an axis, with the
+ * mean height of the columns in each ring, gives a radius. The axis goes, for
+ * each of x and y, through the lower side if the heap leans on it, else the
+ * upper one, else through the centre of the heap; a direction in which the heap
+ * leans on both sides does not count in the radius (a slice of a plane heap).
  */
 #ifndef TALUS_OUTLINE_H
 #define TALUS_OUTLINE_H

@@ -91,6 +91,11 @@ double outline_height(const struct outline *outline) {
   return height;
 }
 
+/* Height at which a heap of this largest height ends. */
+static double end_height(const struct outline *o, double height) {
+  return 0.5 * min2(o->spacing, height);
+}
+
 /* Where the heap ends, in columns from the centre of column 0, walking from
  * `start` in steps of +1 or -1 over heights h [n]. */
 static double walk(int n, const double *h, double threshold, int start,
@@ -110,9 +115,10 @@ static int tallest(int n, const double *h) {
 
 static double front_2d(const struct outline *o) {
   const int n = o->n[0];
-  const double *h = o->height, threshold = 0.5 * o->spacing;
+  const double *h = o->height;
   int start = tallest(n, h);
-  if (h[start] <= threshold) return o->first[0] - 0.5 * o->spacing;
+  const double threshold = end_height(o, h[start]);
+  if (h[start] <= 0) return o->first[0] - 0.5 * o->spacing;
   double upper = walk(n, h, threshold, start, 1);
   double lower = walk(n, h, threshold, start, -1);
   double mass = 0, moment = 0;
@@ -150,7 +156,7 @@ static void lean(const struct outline *o, int k, double *first, double *last,
 /* Axis of the rings, in columns, and which directions count in the radius. */
 static void find_axis(const struct outline *o, double axis[2],
                       double weight[2]) {
-  double threshold = 0.5 * o->spacing;
+  const double threshold = end_height(o, outline_height(o));
   for (int k = 0; k < 2; k++) {
     double first, last, centre;
     lean(o, k, &first, &last, &centre);
@@ -178,9 +184,10 @@ static double front_3d(const struct outline *o) {
   for (int k = 0; k < n; k++) /* a ring may slip between the centres */
     mean[k] = count[k] > 0 ? mean[k] / count[k] : k > 0 ? mean[k - 1] : 0;
   while (n > 1 && count[n - 1] == 0) n--; /* outside the box */
-  double threshold = 0.5 * o->spacing, front = 0;
+  double front = 0;
   int start = tallest(n, mean);
-  if (mean[start] > threshold)
+  const double threshold = end_height(o, mean[start]);
+  if (mean[start] > 0)
     front = o->spacing * (walk(n, mean, threshold, start, 1) + 0.5);
   mem_free(mean);
   mem_free(count);

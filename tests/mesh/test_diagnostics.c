@@ -186,6 +186,31 @@ START_TEST(a_heap_on_the_upper_wall_is_walked_downwards) {
 }
 END_TEST
 
+/* Such as 0.3 of a cell, on the whole floor or up to its middle. */
+START_TEST(a_layer_thinner_than_a_cell_has_a_front) {
+  const double delta = 1.0 / 32, thin[] = {0.9, 0.5, 0.3, 1e-3};
+  for (int k = 0; k < 4; k++) {
+    struct world w = world_new(5, 5);
+    struct outline outline;
+    fill_box(&w, 0, _i ? 0.5 : 1, 0, 1, thin[k]);
+    for (int32_t i = 0; i < w.mesh->nleaves; i++) {
+      if (w.mesh->x[i][DIM - 1] > delta) w.c[i] = 0;
+      w.heap[i] = w.c[i] > 0;
+    }
+    outline_measure(w.mesh, w.c, w.heap, DIM - 1, &outline);
+    double front = outline_front(&outline), height = outline_height(&outline);
+    outline_free(&outline);
+    world_destroy(&w);
+    ck_assert_double_eq(height, thin[k] * delta);
+    /* 2D: the middle between the last full column and the first empty one is
+     * the edge; 3D: both leans make a slice of a plane heap where it is one,
+     * else the rings reach into the far corner */
+    double exact = _i ? 0.5 : DIM == 2 ? 1 : sqrt(2);
+    ck_assert_double_le(fabs(front - exact), DIM == 2 ? 1e-12 : delta);
+  }
+}
+END_TEST
+
 START_TEST(columns_add_up_to_the_volume) {
   struct world w = world_new(3, 5);
   const double x0[2] = {0.2, 0.7};
@@ -386,6 +411,7 @@ Suite *diagnostics_suite(void) {
   tcase_add_test(tcase, the_front_of_a_wedge_on_the_wall_is_interpolated);
   tcase_add_test(tcase, a_heap_in_the_middle_has_the_front_of_its_longer_side);
   tcase_add_test(tcase, a_heap_on_the_upper_wall_is_walked_downwards);
+  tcase_add_loop_test(tcase, a_layer_thinner_than_a_cell_has_a_front, 0, 2);
   tcase_add_test(tcase, columns_add_up_to_the_volume);
   tcase_add_test(tcase, the_vertical_is_the_axis_of_gravity);
   suite_add_tcase(suite, tcase);
