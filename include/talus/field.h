@@ -77,6 +77,11 @@ void fields_save(struct fields *fields, const struct mesh *mesh);
 void fields_restore(struct fields *fields, const struct mesh *mesh);
 void field_restore(struct field *field, const struct mesh *mesh);
 
+/* The name of the first field with restart == true that is inf or nan on a leaf
+ * or face of some rank; NULL: none. Collective. */
+const char *fields_not_finite(const struct fields *fields,
+                              const struct mesh *mesh);
+
 /* The arrays of a vector's components. */
 static inline void field_arrays(struct field *const field[DIM],
                                 double *v[DIM]) {

@@ -417,16 +417,6 @@ static void add_travel(struct simulation *sim, double dt) {
   sim->travel += mesh_max(mesh, travel);
 }
 
-static bool is_finite(const struct simulation *sim) {
-  double sum = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    double leaf = fabs(sim->p->v[i]);
-    for (int e = 0; e < DIM; e++) leaf += fabs(sim->u[e]->v[i]);
-    sum += leaf;
-  }
-  return isfinite(mesh_sum(sim->mesh, sum));
-}
-
 /* A solve that stalls at round-off, close to its tolerance, is good enough;
  * one that stalls far from it is not. */
 static bool is_solved(const struct solve_stats *stats, double tolerance) {
@@ -440,8 +430,11 @@ static bool has_failed(const struct simulation *sim) {
   const struct solve_stats *solve[] = {&sim->pressure, &sim->predictor,
                                        &sim->viscous};
   static const char *const name[] = {"pressure", "predictor", "viscous"};
-  bool failed = !is_finite(sim);
-  if (failed) log_info("step %lld: not finite", (long long)sim->step);
+  const char *wild = fields_not_finite(&sim->fields, sim->mesh);
+  bool failed = wild != NULL;
+  if (failed) {
+    log_info("step %lld: %s is not finite", (long long)sim->step, wild);
+  }
   for (int k = 0; k < 3; k++) {
     const double tolerance = k < 2 ? params->tolerance_pressure
                                    : params->tolerance_viscous * sim->scale;

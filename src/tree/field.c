@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/field.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "talus/error.h"
@@ -84,6 +86,26 @@ void fields_restore(struct fields *fields, const struct mesh *mesh) {
   for (int k = 0; k < fields->n; k++) {
     if (fields->field[k]->restart) field_restore(fields->field[k], mesh);
   }
+}
+
+static bool is_finite(int32_t n, const double *v) {
+  bool finite = true;
+  for (int32_t i = 0; i < n; i++) finite &= fabs(v[i]) <= DBL_MAX;
+  return finite;
+}
+
+const char *fields_not_finite(const struct fields *fields,
+                              const struct mesh *mesh) {
+  int worst = 0; /* FIELDS_MAX less the place of the first that is not */
+  for (int k = 0; k < fields->n && worst == 0; k++) {
+    const struct field *field = fields->field[k];
+    if (!field->restart) continue;
+    const bool cells = field->location == FIELD_CELL;
+    if (!is_finite(cells ? mesh->nleaves : mesh->nfaces, field->v))
+      worst = FIELDS_MAX - k;
+  }
+  worst = (int)mesh_max(mesh, worst);
+  return worst > 0 ? fields->field[FIELDS_MAX - worst]->name : NULL;
 }
 
 void field_fill_many(const struct mesh *mesh, int n,
