@@ -53,9 +53,16 @@ static double read_seconds(const char *text) {
   return seconds;
 }
 
+static void set_directory(struct command_line *line, const char *value) {
+  if (*value == '-')
+    USER_ERROR("-o %s: a directory is needed; if it has this name say ./%s",
+               value, value);
+  line->directory = value;
+}
+
 static void set_option(struct command_line *line, const char *name,
                        const char *value) {
-  if (strcmp(name, "-o") == 0) line->directory = value;
+  if (strcmp(name, "-o") == 0) set_directory(line, value);
   if (strcmp(name, "--restart") == 0) line->restart = true;
   if (strcmp(name, "--quiet") == 0) line->quiet = true;
   if (strcmp(name, "--timing") == 0) line->timing = true;
@@ -64,9 +71,10 @@ static void set_option(struct command_line *line, const char *name,
     line->max_walltime = read_seconds(value);
 }
 
-/* Takes argv[i] and perhaps its value; returns the last index taken. */
+/* Takes argv[i] and perhaps its value; returns the last index taken. `given`
+ * has the values of options that came before. */
 static int read_option(int argc, char *argv[], int i,
-                       struct command_line *line) {
+                       const char *given[NOPTIONS], struct command_line *line) {
   int k = find_option(argv[i]);
   if (k < 0) refuse_option(argv[i]);
   const char *name = OPTIONS[k].name, *value = strchr(argv[i], '=');
@@ -74,41 +82,60 @@ static int read_option(int argc, char *argv[], int i,
     if (value != NULL) USER_ERROR("%s: %s takes no value", argv[i], name);
   } else if (value != NULL) {
     value++;
-  } else if (i + 1 < argc) {
+  } else if (i + 1 < argc && find_option(argv[i + 1]) < 0) {
     value = argv[++i];
   } else {
     USER_ERROR("%s needs a value: %s %s", name, name, OPTIONS[k].value);
   }
   if (value != NULL && *value == '\0')
     USER_ERROR("%s needs a value: %s %s", name, name, OPTIONS[k].value);
-  set_option(line, name, value != NULL ? value : "");
+  if (value == NULL) value = "";
+  if (given[k] != NULL && strcmp(given[k], value) != 0)
+    USER_ERROR("%s %s and %s %s: give one of them", name, given[k], name,
+               value);
+  given[k] = value;
+  set_option(line, name, value);
   return i;
 }
 
-static void read_word(char *word, struct command_line *line) {
-  if (line->case_path == NULL && strchr(word, '=') == NULL) {
-    line->case_path = word;
-  } else if (strchr(word, '=') == NULL) {
-    USER_ERROR("%s: after the case, %s, only name=value and options may follow",
-               word, line->case_path);
-  } else if (line->noverrides == COMMAND_LINE_MAX_OVERRIDES) {
+/* The words before and behind `=` of two overrides. */
+static bool same_name(const char *a, const char *b) {
+  const size_t n = strcspn(a, "=");
+  return strncmp(a, b, n + 1) == 0;
+}
+
+static void add_override(char *word, struct command_line *line) {
+  if (word[strcspn(word, "=")] == '\0')
+    USER_ERROR(
+        "%s: after the case, %s, only name=value and options may "
+        "follow; the case comes first",
+        word, line->case_path);
+  if (line->noverrides == COMMAND_LINE_MAX_OVERRIDES)
     USER_ERROR("more than %d overrides on the command line",
                COMMAND_LINE_MAX_OVERRIDES);
-  } else {
-    line->overrides[line->noverrides++] = word;
+  for (int i = 0; i < line->noverrides; i++) {
+    const char *before = line->overrides[i];
+    if (same_name(before, word) && strcmp(before, word) != 0)
+      USER_ERROR("%s and %s on the command line: give one of them", before,
+                 word);
   }
+  line->overrides[line->noverrides++] = word;
 }
 
 void command_line_read(int argc, char *argv[], bool running,
                        struct command_line *line) {
+  const char *given[NOPTIONS] = {NULL};
   *line = (struct command_line){.max_steps = -1};
   for (int i = 0; i < argc; i++) {
     if (argv[i][0] != '-') {
-      read_word(argv[i], line);
+      if (line->case_path == NULL)
+        line->case_path = argv[i];
+      else
+        add_override(argv[i], line);
     } else if (!running) {
       USER_ERROR("%s: `talus check` takes a case and name=value only", argv[i]);
     } else {
-      i = read_option(argc, argv, i, line);
+      i = read_option(argc, argv, i, given, line);
     }
   }
   if (line->case_path == NULL)
@@ -122,8 +149,8 @@ void command_line_find_case(int argc, char *argv[], struct command_line *line) {
     int k = find_option(argv[i]);
     if (k >= 0 && OPTIONS[k].value != NULL && strchr(argv[i], '=') == NULL) i++;
     if (k >= 0 || argv[i][0] == '-') continue;
-    if (strchr(argv[i], '=') == NULL)
-      line->case_path = line->case_path ? line->case_path : argv[i];
+    if (line->case_path == NULL)
+      line->case_path = argv[i];
     else if (line->noverrides < COMMAND_LINE_MAX_OVERRIDES)
       line->overrides[line->noverrides++] = argv[i];
   }

@@ -27,6 +27,7 @@ static const char USAGE[] =
 static const char RUN_HELP[] =
     "talus run CASE.lua [name=value ...] [options]\n"
     "\n"
+    "  CASE.lua           the first word that is no option\n"
     "  name=value         overrides what the case declares by param();\n"
     "                     lists as times=0.5,1,2\n"
     "  -o DIR             output directory; default: name of the case + .out;\n"

@@ -29,7 +29,10 @@ static char *read_everywhere(const char *path) {
   int64_t head[2] = {text != NULL ? (int64_t)strlen(text) : -1, errno};
   MPI_CHECK(MPI_Bcast(head, 2, MPI_INT64_T, 0, MPI_COMM_WORLD));
   if (head[0] < 0)
-    USER_ERROR("cannot read the case %s: %s", path, strerror((int)head[1]));
+    USER_ERROR("cannot read the case %s: %s%s", path, strerror((int)head[1]),
+               strchr(path, '=') == NULL
+                   ? ""
+                   : "; the case comes first, name=value follow it");
   if (base_rank() != 0) text = MEM_NEW(char, (size_t)head[0] + 1);
   MPI_CHECK(MPI_Bcast(text, (int)head[0], MPI_CHAR, 0, MPI_COMM_WORLD));
   return text;

@@ -21,8 +21,9 @@ struct command_line {
   double max_walltime; /* s, 0: no bound */
 };
 
-/* Collective; whatever is wrong is a USER_ERROR. `running` allows the options
- * of `run`. */
+/* The first word that is no option is the case, with or without `=` in it, the
+ * others are overrides. Collective; whatever is wrong is a USER_ERROR.
+ * `running` allows the options of `run`. */
 void command_line_read(int argc, char *argv[], bool running,
                        struct command_line *line);
 

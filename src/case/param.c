@@ -2,16 +2,17 @@
 /* param(name, default, help): what the command line may override. */
 #include <lauxlib.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "case_file.h"
 #include "talus/error.h"
 #include "talus/spelling.h"
 
-/* The text behind `name=` on the command line; the last one counts. */
+/* The text behind `name=` on the command line. */
 static const char *override_of(const struct case_file *file, const char *name) {
   size_t n = strlen(name);
-  for (int i = file->noverrides - 1; i >= 0; i--) {
+  for (int i = 0; i < file->noverrides; i++) {
     const char *text = file->overrides[i];
     if (strncmp(text, name, n) == 0 && text[n] == '=') return text + n + 1;
   }
@@ -25,9 +26,11 @@ static int complain_of_override(lua_State *L, const char *name,
                     wanted);
 }
 
+/* Lua takes hexadecimal integers modulo 2^64, which strtod does not. */
 static bool push_number(lua_State *L, const char *text) {
   if (lua_stringtonumber(L, text) == 0) return false;
-  if (isfinite(lua_tonumber(L, -1))) return true;
+  const double value = lua_tonumber(L, -1);
+  if (isfinite(value) && value == strtod(text, NULL)) return true;
   lua_pop(L, 1);
   return false;
 }
@@ -55,7 +58,9 @@ static int push_override(lua_State *L, const char *name, const char *text) {
   switch (lua_type(L, 2)) {
     case LUA_TNUMBER:
       if (push_number(L, text)) return 1;
-      return complain_of_override(L, name, text, "a number");
+      return complain_of_override(
+          L, name, text,
+          lua_stringtonumber(L, text) ? "a finite decimal number" : "a number");
     case LUA_TBOOLEAN:
       if (strcmp(text, "true") != 0 && strcmp(text, "false") != 0)
         return complain_of_override(L, name, text, "true or false");
@@ -87,7 +92,12 @@ static void value_to_text(lua_State *L) {
   int list = lua_gettop(L);
   lua_pushliteral(L, "");
   for (int i = 1; lua_rawgeti(L, list, i) != LUA_TNIL; i++) {
-    if (lua_istable(L, -1)) luaL_error(L, "param: a list within a list");
+    const int type = lua_type(L, -1);
+    if (type != LUA_TNUMBER && type != LUA_TSTRING && type != LUA_TBOOLEAN)
+      luaL_error(L,
+                 "param: a list holds a %s: numbers, texts, true and false "
+                 "are what it may hold",
+                 luaL_typename(L, -1));
     value_to_text(L);
     lua_pushstring(L, i > 1 ? "," : "");
     lua_insert(L, -2);
@@ -150,12 +160,14 @@ void param_check_overrides(struct case_file *file) {
   for (int i = 0; i < file->ndeclared; i++) names[i] = file->declared[i].name;
   for (int i = 0; i < file->noverrides; i++) {
     const char *text = file->overrides[i];
+    const size_t n = strcspn(text, "=");
     char word[PARAMS_NAME_LENGTH], suggestion[2048];
-    snprintf(word, sizeof word, "%.*s", (int)strcspn(text, "="), text);
     bool known = false;
     for (int k = 0; k < file->ndeclared; k++)
-      known = known || strcmp(word, names[k]) == 0;
+      known =
+          known || (strlen(names[k]) == n && memcmp(text, names[k], n) == 0);
     if (known) continue;
+    snprintf(word, sizeof word, "%.*s", (int)n, text);
     read_suggest(word, file->ndeclared, names, sizeof suggestion, suggestion);
     USER_ERROR("%s on the command line: %s declares no parameter `%s`%s", text,
                file->path, word, suggestion);
