@@ -52,7 +52,7 @@ void case_destroy(struct case_file *file);
 
 /* What the case says, owned by the case and valid while it lives. Its functions
  * may be called on any rank; if one fails there the program ends, as a
- * USER_ERROR when there is one rank, as FATAL when there are more. */
+ * USER_ERROR_ALONE that names the point. */
 const struct params *case_params(const struct case_file *file);
 
 /* Something about the case that is no error but worth a word, as one line; NULL
@@ -74,6 +74,10 @@ void case_print(const struct case_file *file, FILE *f);
 /* Writes the same as csv: a header `key,value,unit,origin`, origin one of
  * default, case, command line. Fields are quoted where csv needs it. */
 void case_write_parameters(const struct case_file *file, FILE *f);
+
+/* Whether a field, a dataset or an output of some closure has this name, so
+ * that a tracer cannot have it. */
+bool case_name_is_taken(const char *name);
 
 /* What the case returns as `dimension`, 0 if that cannot be found out. Prints
  * nothing: who runs the case will find out why. */

@@ -46,26 +46,6 @@ void initial_read_velocity(struct case_file *file, const struct key *key) {
     velocity[d] = (struct function){constant, &file->velocity[d]};
 }
 
-/* Names that fields and files have taken; those that end in _ with anything
- * behind. */
-static bool is_taken(const char *name) {
-  static const char *const TAKEN[] = {
-      "fraction", "pressure",  "density",       "viscosity",  "velocity",
-      "frozen",   "plane",     "band",          "c_old",      "cells",
-      "vertices", "level",     "parameters",    "state",      "levels",
-      "fields",   "partition", "acceleration_", "velocity_",  "normal_",
-      "old_",     "cell_",     "face_",         "shear_rate", "drag",
-      "nu",       "T",         "pE_over_p",     "time",       "x",
-      "y",        "height"};
-  for (size_t i = 0; i < sizeof TAKEN / sizeof *TAKEN; i++) {
-    size_t n = strlen(TAKEN[i]);
-    bool prefix = TAKEN[i][n - 1] == '_';
-    if (strncmp(name, TAKEN[i], n) == 0 && (prefix || name[n] == '\0'))
-      return true;
-  }
-  return false;
-}
-
 void initial_read_tracers(struct case_file *file, const struct key *key) {
   lua_State *L = file->L;
   struct params *params = &file->params;
@@ -78,8 +58,11 @@ void initial_read_tracers(struct case_file *file, const struct key *key) {
   for (int i = 0; i < n; i++) {
     char path[PATH_LENGTH];
     path_join(path, key->path, names[i]);
-    if (is_taken(names[i]))
-      read_fail_at(file, path, "%s: this name is taken, choose another", path);
+    if (case_name_is_taken(names[i]))
+      read_fail_at(file, path,
+                   "%s: this name is taken by a field of the program, choose "
+                   "another",
+                   path);
     lua_getfield(L, -1, names[i]);
     if (!lua_isfunction(L, -1))
       read_fail(file, path, "a function of position is needed (%s)", key->help);

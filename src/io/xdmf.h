@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+#include "talus/params.h"
+
 enum { XDMF_MAX_ARRAYS = 64 };
 
 /* How an index of ours begins. */
@@ -17,7 +19,7 @@ enum { XDMF_MAX_ARRAYS = 64 };
   "CollectionType=\"Temporal\">\n"
 
 struct xdmf_array {
-  char name[48];
+  char name[PARAMS_NAME_LENGTH];
   int columns; /* 1, or 3 for a vector */
 };
 
