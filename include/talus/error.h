@@ -99,6 +99,11 @@ int base_size(void);
  * Collective. */
 #define SYSTEM_ERROR(...) base_system_error(__VA_ARGS__)
 
+/* USER_ERROR for what one rank may be alone to find, such as a function of the
+ * case that fails at one point: ends all ranks, through MPI_Abort where there
+ * are several. Where more than one finds something the lowest is heard. */
+#define USER_ERROR_ALONE(...) base_user_error_alone(__VA_ARGS__)
+
 /* Warns on stderr and in the log the first time this line of code is reached.
  * Only rank 0 prints: reduce the condition first if ranks can differ. */
 #define WARN_ONCE(...)                                      \
@@ -125,6 +130,8 @@ void base_check_failed(const char *file, int line, const char *function,
 void base_user_error(const char *format, ...)
     __attribute__((format(printf, 1, 2), noreturn, cold));
 void base_system_error(const char *format, ...)
+    __attribute__((format(printf, 1, 2), noreturn, cold));
+void base_user_error_alone(const char *format, ...)
     __attribute__((format(printf, 1, 2), noreturn, cold));
 void base_warn(const char *file, int line, const char *function,
                const char *format, ...)

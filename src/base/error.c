@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "talus/lock.h"
 #include "talus/log.h"
@@ -140,17 +141,19 @@ void base_check_failed(const char *file, int line, const char *function,
   die(file, line, function, message);
 }
 
+static void say_error(const char *format, va_list arguments) {
+  char message[MESSAGE_LENGTH];
+  vsnprintf(message, sizeof message, format, arguments);
+  fflush(stdout);
+  fprintf(stderr, "talus: error: %s\n", message);
+  log_info("error: %s", message);
+}
+
 /* Last words in good order, of rank 0, and the end. */
 static _Noreturn void end_in_order(int status, const char *format,
                                    va_list arguments) {
   signals_remember(); /* mpirun ends the others as soon as one has gone */
-  if (rank == 0) {
-    char message[MESSAGE_LENGTH];
-    vsnprintf(message, sizeof message, format, arguments);
-    fflush(stdout);
-    fprintf(stderr, "talus: error: %s\n", message);
-    log_info("error: %s", message);
-  }
+  if (rank == 0) say_error(format, arguments);
   log_close();
   lock_release(); /* before others end, and mpirun ends all */
   if (mpi_runs()) MPI_Finalize();
@@ -167,6 +170,26 @@ void base_system_error(const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   end_in_order(EXIT_SYSTEM, format, arguments);
+}
+
+/* Until lower ranks, which may have found the same, have had their say. */
+static void wait_for_lower_ranks(void) {
+  const int64_t wait = rank == 0 ? 0 : 1000 + 20 * (int64_t)rank; /* ms */
+  nanosleep(&(struct timespec){.tv_sec = wait / 1000,
+                               .tv_nsec = wait % 1000 * 1000000},
+            NULL);
+}
+
+void base_user_error_alone(const char *format, ...) {
+  va_list arguments;
+  wait_for_lower_ranks();
+  va_start(arguments, format);
+  say_error(format, arguments);
+  va_end(arguments);
+  log_close();
+  if (mpi_runs() && size > 1) MPI_Abort(MPI_COMM_WORLD, EXIT_USER);
+  if (mpi_runs()) MPI_Finalize();
+  exit(EXIT_USER);
 }
 
 void base_warn(const char *file, int line, const char *function,

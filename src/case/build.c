@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From the table that a case returns to params: one pass over the keys, then
  * what single keys cannot tell. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -119,10 +120,31 @@ static void check_phases(struct case_file *file) {
                  "grains.shape is missing: there is gas, so say where the "
                  "grains are at t = 0 by a function of position, or take "
                  "`gas` away to fill the box with grains");
-  if (shape && !gas)
+  if (!shape || gas) return;
+  if (case_finds_gas(file))
     read_fail_at(file, "grains.shape",
                  "gas is missing: grains.shape leaves a part of the box to "
                  "it, so give its density and rheology");
+  read_fail_at(file, "grains.shape",
+               "gas is missing: grains.shape is positive wherever it was "
+               "tried, so leave it out and the grains fill the box, or give "
+               "gas its density and rheology");
+}
+
+/* Cells must be told apart by their coordinates. */
+static void check_origin(struct case_file *file) {
+  const struct params *params = &file->params;
+  const double finest = ldexp(params->size, -params->level_max);
+  for (int d = 0; d < params->dimension; d++) {
+    const double lower = params->origin[d];
+    const double upper = lower + params->size * params->trees[d];
+    const double most = fmax(fabs(lower), fabs(upper));
+    if (finest > 0x1p8 * DBL_EPSILON * most) continue;
+    read_fail_at(file, "domain.origin",
+                 "domain: cells of %g cannot be told apart at a coordinate of "
+                 "%g: lower domain.level, or put domain.origin nearer to 0",
+                 finest, most);
+  }
 }
 
 /* Friction between grains leaves pores; a liquid keeps its bubbles. */
@@ -196,6 +218,7 @@ void build_params(struct case_file *file) {
   choose_permeable(&file->params);
   check_walls(file);
   check_grid(file);
+  check_origin(file);
   boundary_check(file);
   pressure_check(file);
 }

@@ -27,6 +27,10 @@ enum {
   CASE_MAX_NAMES = 64 /* words known in one place */
 };
 
+/* Largest number but for times and level sets, by size, and its inverse the
+ * smallest but for 0: products of some must neither overflow nor vanish. */
+#define CASE_LARGEST 1e50
+
 /* One line of what is in use. Texts are owned. */
 struct row {
   char *key, *value, *unit, *help;
@@ -45,6 +49,7 @@ struct case_function {
   int reference;          /* in Lua's registry */
   bool is_viscosity;      /* of shear rate, pressure, time; else of x */
   int nresults, result;   /* it returns so many numbers, this one is meant */
+  double most;            /* largest size of a number it may return */
   char name[PARAMS_NAME_LENGTH]; /* what it returned last, if a name */
 };
 
@@ -132,6 +137,10 @@ void read_suggest(const char *word, int n, const char *const *names,
 
 /* function.c */
 
+/* Is grains.shape, if there is one, not positive somewhere in the box? As
+ * case_finds_grains. */
+bool case_finds_gas(const struct case_file *file);
+
 /* Keep the function on top for later. Adds a row. */
 struct case_function *function_keep(struct case_file *file, const char *path,
                                     const char *unit, const char *help,
@@ -144,7 +153,7 @@ void function_set_viscosity(struct case_function *function,
                             struct rheology *rheology);
 /* The name it returns at x, valid until the next call. */
 const char *function_name(struct case_function *function, const double x[3]);
-/* Ends the program, by FATAL when only this rank may know. */
+/* Ends the program; only this rank may know. */
 _Noreturn void function_fail(struct case_function *function, const double x[3],
                              const char *format, ...)
     __attribute__((format(printf, 3, 4)));

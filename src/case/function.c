@@ -21,7 +21,8 @@ struct case_function *function_keep(struct case_file *file, const char *path,
   lua_getinfo(L, ">S", &where);
   char text[VALUE_LENGTH];
   snprintf(text, sizeof text, "function at line %d", where.linedefined);
-  *function = (struct case_function){.file = file, .nresults = nresults};
+  *function = (struct case_function){
+      .file = file, .nresults = nresults, .most = INFINITY};
   snprintf(function->path, sizeof function->path, "%s", path);
   function->reference = luaL_ref(L, LUA_REGISTRYINDEX);
   rows_add(file, path, text, unit, help, "case");
@@ -50,10 +51,7 @@ void function_fail(struct case_function *function, const double x[3],
   vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
   call_text(function, x, sizeof call, call);
-  if (file->loading) read_fail_at(file, function->path, "%s %s", call, message);
-  if (base_size() == 1) USER_ERROR("%s: %s %s", file->path, call, message);
-  /* Other ranks may be elsewhere: an orderly end would wait for them. */
-  FATAL("%s: %s %s", file->path, call, message);
+  read_fail_at(file, function->path, "%s %s", call, message);
 }
 
 /* Leaves nresults values on the stack. */
@@ -72,11 +70,15 @@ static double eval(void *context, const double x[3]) {
   lua_State *L = function->file->L;
   call(function, x);
   int index = function->result - function->nresults;
-  if (lua_type(L, index) != LUA_TNUMBER || !isfinite(lua_tonumber(L, index)))
+  if (lua_type(L, index) != LUA_TNUMBER)
     function_fail(function, x, "returned %s, a finite number is needed",
-                  lua_type(L, index) == LUA_TNUMBER ? "inf or nan"
-                                                    : luaL_typename(L, index));
+                  luaL_typename(L, index));
   double value = lua_tonumber(L, index);
+  if (!isfinite(value))
+    function_fail(function, x, "returned %g, a finite number is needed", value);
+  if (fabs(value) > function->most)
+    function_fail(function, x, "returned %g, a number of size <= %g is needed",
+                  value, function->most);
   lua_pop(L, function->nresults);
   return value;
 }
@@ -128,6 +130,9 @@ const char *function_name(struct case_function *function, const double x[3]) {
                   "returned %s, the name of a boundary is needed (no_slip, "
                   "slip, symmetry, or one of boundary.patches)",
                   luaL_typename(L, -1));
+  if (lua_rawlen(L, -1) >= sizeof function->name)
+    function_fail(function, x, "returned a text of %zu letters, a name has %d",
+                  (size_t)lua_rawlen(L, -1), PARAMS_NAME_LENGTH - 1);
   snprintf(function->name, sizeof function->name, "%s", lua_tostring(L, -1));
   lua_pop(L, 1);
   return function->name;
@@ -175,16 +180,28 @@ void function_try_all(struct case_file *file) {
   }
 }
 
-bool case_finds_grains(const struct case_file *file) {
+/* Is the shape positive, or not, at a point inside the box? */
+static bool finds(const struct case_file *file, bool grains) {
   const struct params *params = &file->params;
   const int n = params->dimension == 2 ? 257 : 41;
   const int npoints = params->dimension == 2 ? n * n : n * n * n;
-  if (params->shape.eval == NULL) return true; /* they fill the box */
-  if (params_bring_grains(params)) return true;
   for (int i = 0; i < npoints; i++) {
     double x[3] = {0};
     try_point(params, i, n, x);
-    if (eval(params->shape.context, x) > 0) return true;
+    for (int d = 0; d < params->dimension; d++) {
+      const double width = params->size * params->trees[d];
+      x[d] += 1e-3 * (params->origin[d] + 0.5 * width - x[d]);
+    }
+    if ((eval(params->shape.context, x) > 0) == grains) return true;
   }
   return false;
+}
+
+bool case_finds_grains(const struct case_file *file) {
+  return file->params.shape.eval == NULL ||
+         params_bring_grains(&file->params) || finds(file, true);
+}
+
+bool case_finds_gas(const struct case_file *file) {
+  return file->params.shape.eval != NULL && finds(file, false);
 }

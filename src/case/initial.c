@@ -34,6 +34,7 @@ void initial_read_velocity(struct case_file *file, const struct key *key) {
   if (lua_isfunction(file->L, -1)) {
     struct case_function *function =
         function_keep(file, key->path, key->unit, key->help, n);
+    function->most = CASE_LARGEST;
     for (int d = 0; d < n; d++)
       velocity[d] = function_result(file, function, d);
     return;

@@ -26,10 +26,12 @@ void output_read_times(struct case_file *file, const struct key *key) {
     char path[PATH_LENGTH];
     snprintf(path, sizeof path, "%s[%d]", key->path, i + 1);
     lua_rawgeti(L, -1, i + 1);
-    double time = read_number(
-        file,
-        &(struct key){.high = INFINITY, .type = KEY_NUMBER, .help = key->help},
-        path);
+    double time = read_number(file,
+                              &(struct key){.high = INFINITY,
+                                            .type = KEY_NUMBER,
+                                            .unit = key->unit,
+                                            .help = key->help},
+                              path);
     if (time <= params->stop) params->profile_times[kept++] = time;
   }
   params->nprofile_times = kept;
@@ -55,6 +57,9 @@ static void expect_text(struct case_file *file, const char *path, char *text) {
   double bound[2];
   char number[2][32];
   if (lua_type(L, -1) == LUA_TSTRING) {
+    if (lua_rawlen(L, -1) >= VALUE_LENGTH)
+      read_fail(file, path, "a text of at most %d characters is needed",
+                VALUE_LENGTH - 1);
     snprintf(text, VALUE_LENGTH, "%s", lua_tostring(L, -1));
     return;
   }

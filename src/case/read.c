@@ -12,6 +12,8 @@
 #include "talus/error.h"
 #include "talus/spelling.h"
 
+enum { PLACE_LENGTH = 4096 + 32 }; /* path and line */
+
 /* "file:line" of a key, or "file" if the line is not known. */
 static void place_text(const struct case_file *file, const char *path,
                        size_t size, char *text) {
@@ -39,7 +41,7 @@ static void describe(lua_State *L, size_t size, char *text) {
 
 void read_fail(struct case_file *file, const char *path, const char *format,
                ...) {
-  char place[VALUE_LENGTH], value[VALUE_LENGTH], message[2048];
+  char place[PLACE_LENGTH], value[VALUE_LENGTH], message[2048];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(message, sizeof message, format, arguments);
@@ -51,12 +53,13 @@ void read_fail(struct case_file *file, const char *path, const char *format,
 
 void read_fail_at(struct case_file *file, const char *path, const char *format,
                   ...) {
-  char place[VALUE_LENGTH], message[2048];
+  char place[PLACE_LENGTH], message[2048];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
   place_text(file, path, sizeof place, place);
+  if (!file->loading) USER_ERROR_ALONE("%s: %s", place, message);
   USER_ERROR("%s: %s", place, message);
 }
 
@@ -94,9 +97,11 @@ void read_known_only(struct case_file *file, const char *path, int n,
       if (!known) fail_unknown(file, path, word, n, names);
       continue;
     }
-    if (lua_isinteger(L, -2) && lua_tointeger(L, -2) >= 1 &&
-        lua_tointeger(L, -2) <= npositions)
-      continue;
+    const bool place = lua_isinteger(L, -2) && lua_tointeger(L, -2) >= 1;
+    if (place && lua_tointeger(L, -2) <= npositions) continue;
+    if (place && npositions > 1)
+      read_fail_at(file, path, "%s has %lld elements, at most %d are allowed",
+                   path, (long long)lua_rawlen(L, -3), npositions);
     char value[VALUE_LENGTH], index[VALUE_LENGTH];
     describe(L, sizeof value, value);
     lua_pushvalue(L, -2);
@@ -156,6 +161,14 @@ static double number_within(struct case_file *file, const struct key *key,
   if (lua_type(L, -1) != LUA_TNUMBER) fail_value(file, key, path);
   double value = lua_tonumber(L, -1);
   if (!isfinite(value)) fail_value(file, key, path);
+  const bool is_time = key->unit != NULL && strcmp(key->unit, "s") == 0;
+  const double size = fabs(value);
+  if (!is_time && value != 0 &&
+      (size > CASE_LARGEST || size < 1 / CASE_LARGEST))
+    read_fail(file, path,
+              "0 or a number from %g to %g, by size, is needed: choose other "
+              "units (%s)",
+              1 / CASE_LARGEST, CASE_LARGEST, key->help);
   bool low_enough = value <= key->high;
   bool high_enough = key->above ? value > key->low : value >= key->low;
   if (!low_enough || !high_enough) fail_value(file, key, path);
@@ -260,6 +273,9 @@ static void store(struct case_file *file, const struct key *key,
       return;
     case KEY_TEXT:
       if (lua_type(L, -1) != LUA_TSTRING) fail_value(file, key, path);
+      if (lua_rawlen(L, -1) >= VALUE_LENGTH)
+        read_fail(file, path, "a text of at most %d characters is needed (%s)",
+                  VALUE_LENGTH - 1, key->help);
       snprintf(text, VALUE_LENGTH, "%s", lua_tostring(L, -1));
       memcpy(target, text, VALUE_LENGTH);
       return;

@@ -22,10 +22,12 @@ struct shape {
   void *context;
 };
 
+/* A power of two changes no fraction, and sums of values near the largest
+ * number there is do not overflow. */
 static double evaluate(const struct shape *shape, const double x[DIM]) {
   double point[3] = {0., 0., 0.};
   for (int d = 0; d < DIM; d++) point[d] = x[d];
-  return shape->f(shape->context, point);
+  return 0x1p-8 * shape->f(shape->context, point);
 }
 
 /* Is vertex v on the upper (1) or lower (-1) side of axis d? */

@@ -183,6 +183,31 @@ bad_case only_gas 'only_gas.lua:4: adapt\[1\]: only = "gas", but .* no gas' \
   adapt = { { "velocity", threshold = 1, only = "gas" } }, output = { stop = 1 } }'
 bad_edit tracer 'tracer.lua:9: tracers.pressure: this name is taken' \
   'output =' 'tracers = { pressure = function() return 1 end }, output ='
+for name in viscous_x nu cell_8 vertices; do
+  bad_edit "tracer_$name" "tracer_$name.lua:9: tracers.$name: this name is" \
+    'output =' "tracers = { $name = function() return 1 end }, output ="
+done
+long=$(printf 'x%.0s' {1..63})
+bad_edit tracer_long 'tracer_long.lua:9: tracers: "yx*" is no name: .*at most 63' \
+  'output =' "tracers = { y$long = function() return 1 end }, output ="
+bad_edit title_long 'title_long.lua:9: title = .*a text of at most 255' \
+  'output =' "title = ('x'):rep(256), output ="
+bad_edit many_times 'many_times.lua:9: output.profile_times has 257 elements' \
+  'stop = 1' 'stop = 1, profile_times = { ("1,"):rep(257):byte(1, 257) }'
+bad_edit many_criteria 'many_criteria.lua:9: adapt has 9 elements, at most 8' \
+  'output =' 'adapt = { ("1"):rep(9):byte(1, 9) }, output ='
+for value in size=1e308 size=1e-320 density=1e60 pressure=-1e300; do
+  bad_edit "size_of_$value" 'from 1e-50 to 1e\+50, by size, is needed' \
+    "${value%%=*} = $(grep -oP "(?<=${value%%=*} = )[0-9]" <<< "$good" |
+      head -n 1)" "${value%%=*} = ${value#*=}"
+done
+bad_edit origin 'origin.lua:2: domain: cells of 0.125 cannot be told apart at' \
+  'size = 4' 'size = 4, origin = { 1e20, 0 }'
+bad_edit gas_missing 'gas_missing.lua:5: gas is missing: .*leaves a part' \
+  'gas = {' 'tracers = nil and {'
+all=${good/gas = /tracers = nil and }
+bad_case gas_all_over 'gas_all_over.lua:5: gas is missing: .*is positive wherev' \
+  "${all/return math.min(1 - x, 1 - y)/return 1}"
 bad_edit dimension 'dimension.lua:1: dimension = 4: .*from 2 to 3' \
   'dimension = 2' 'dimension = 4'
 
@@ -197,6 +222,18 @@ bad_edit function_fails 'function_fails.lua:5: .*grains.shape\(.*fails' \
   '1 - y)' '1 - y.z)'
 bad_edit function_nil 'function_nil.lua:5: grains.shape\(.*returned nil' \
   'return math.min(1 - x, 1 - y)' ''
+bad_edit function_inf \
+  'function_inf.lua:5: grains.shape\(0, 0\) returned -inf, a finite number' \
+  'return math.min(1 - x, 1 - y)' 'return -1 / 0'
+bad_edit function_text 'function_text.lua:5: grains.shape\(0, 0\) returned string' \
+  'return math.min(1 - x, 1 - y)' 'return "1"'
+bad_edit velocity_huge \
+  'velocity_huge.lua:9: velocity\(0, 0\) returned 1e\+60, a number of size <=' \
+  'output =' 'velocity = function() return 0, 1e60 end, output ='
+# a fault at some point only, which only the run comes to
+bad_edit function_point \
+  'function_point.lua:5: grains.shape\(0.515625, .*\) returned nil' \
+  'return math.min' 'if x > 0.51 and x < 0.53 then return end return math.min'
 bad_edit function_endless 'function_endless.lua:5: .*still running' \
   'return math.min' 'while true do end return math.min'
 bad_case endless 'endless.lua:1: .*still running' 'while true do end'
@@ -230,6 +267,20 @@ refuses override_flag 'flag=1 on the command line: true or false' \
   run ../cases/param.lua flag=1
 refuses override_range 'param.lua:5: domain.level = 40' \
   run ../cases/param.lua level=40
+refuses override_finite 'level=1e999 on the command line: a finite' \
+  run ../cases/param.lua level=1e999
+refuses override_wraps 'level=0x10000000000000005 .*: a finite decimal' \
+  run ../cases/param.lua level=0x10000000000000005
+refuses override_twice 'level=5 and level=6 on the command line: give one' \
+  run ../cases/param.lua level=5 level=6
+refuses override_first 'cannot read the case level=5: .*the case comes first' \
+  run level=5
+refuses directory_missing '-o needs a value: -o DIR' \
+  run ../cases/good.lua -o --restart
+refuses directory_option '-o -x: a directory is needed; .* say ./-x' \
+  run ../cases/good.lua -o -x
+refuses directory_twice '-o a and -o b: give one of them' \
+  run ../cases/good.lua -o a -o b
 refuses missing_file 'none.lua: No such file' run ../cases/none.lua
 refuses directory_as_case 'cases: Is a directory' run ../cases
 refuses unknown_command 'unknown command rum; did you mean run' rum
@@ -246,6 +297,12 @@ refuses unwritable "output directory '../cases/good.lua/out'" \
   run ../cases/good.lua -o ../cases/good.lua/out
 refuses unwritable_proc "output directory '/proc/talus'" \
   run ../cases/good.lua -o /proc/talus
+
+# A path with = in it is a path
+mkdir cases/a=1
+cp cases/good.lua cases/a=1/b=2.lua
+(cd work && "$build/talus" check ../cases/a=1/b=2.lua) > output 2>&1 ||
+  complain "a path with = in it is refused"
 
 # Help where it is looked for
 shows() {

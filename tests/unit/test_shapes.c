@@ -95,6 +95,18 @@ START_TEST(shape_fraction_does_not_depend_on_the_scale_of_the_level_set) {
 }
 END_TEST
 
+static double largest_value(void *context, const double x[3]) {
+  return x[0] < *(const double *)context ? 1.7e308 : -1.7e308;
+}
+
+/* Values near the largest number, of which there is no difference. */
+START_TEST(shape_fraction_of_the_largest_values_is_right) {
+  double edge = 0.5; /* on a face of the smallest pieces, which hold both */
+  double found = total(largest_value, &edge, 5, 3);
+  ck_assert_double_le(fabs(found - 0.5), 0.5 / (5 * 8));
+}
+END_TEST
+
 START_TEST(shape_fraction_of_a_constant_is_its_sign) {
   double x[DIM] = {0.4, 0.3}, value[] = {-1., 1., -1e-300, INFINITY};
   for (int k = 0; k < 3; k++)
@@ -211,6 +223,7 @@ Suite *shapes_suite(void) {
   tcase_add_test(tcase, shape_fraction_of_a_plane_is_exact);
   tcase_add_test(tcase,
                  shape_fraction_does_not_depend_on_the_scale_of_the_level_set);
+  tcase_add_test(tcase, shape_fraction_of_the_largest_values_is_right);
   tcase_add_test(tcase, shape_fraction_of_a_constant_is_its_sign);
   tcase_add_test(tcase, shape_fraction_of_a_box_on_cell_faces_is_exact);
   tcase_add_test(tcase, shape_fraction_of_a_column_reaches_beyond_the_domain);
