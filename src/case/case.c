@@ -64,6 +64,8 @@ struct case_file *case_load_text(const char *path, const char *text,
   file->loading = true;
   sandbox_set_loud(file->sandbox, true);
   const char *error = sandbox_run(file->sandbox, file->text);
+  if (error != NULL && sandbox_was_late(file->sandbox))
+    USER_ERROR_ALONE("%s", error);
   if (error != NULL) USER_ERROR("%s", error);
   param_check_overrides(file);
   if (!lua_istable(file->L, -1))

@@ -59,7 +59,8 @@ void read_fail_at(struct case_file *file, const char *path, const char *format,
   vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
   place_text(file, path, sizeof place, place);
-  if (!file->loading) USER_ERROR_ALONE("%s: %s", place, message);
+  if (!file->loading || sandbox_was_late(file->sandbox))
+    USER_ERROR_ALONE("%s: %s", place, message);
   USER_ERROR("%s: %s", place, message);
 }
 

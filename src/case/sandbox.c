@@ -2,11 +2,12 @@
 #include "sandbox.h"
 
 #include <lauxlib.h>
-#include <lualib.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
+#include "library.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 
@@ -17,49 +18,15 @@ static const size_t MEMORY_LIMIT = (size_t)SANDBOX_MEGABYTES << 20;
 struct sandbox {
   lua_State *L;
   char *path;
-  size_t used;    /* bytes */
-  bool limited;   /* code of the case is running */
-  int64_t budget; /* instructions left to it */
-  bool loud;
+  size_t used;       /* bytes */
+  bool limited;      /* code of the case is running */
+  double budget;     /* instructions left to it */
+  double unseen;     /* instructions since the clock was last looked at */
+  double begin;      /* s, when that was first done in this call, or 0 */
+  double begin_used; /* s of the processor, when it was late; 0: it was not */
+  bool late, loud;
   char message[MESSAGE_LENGTH];
 };
-
-/* What a case may use of Lua's base library. */
-static const char *const BASE[] = {"assert",   "error",  "ipairs", "math",
-                                   "select",   "string", "table",  "tonumber",
-                                   "tostring", "type",   "utf8"};
-
-/* What it may look for in vain. */
-static const char *const LEFT_OUT[] = {
-    "os",      "io",           "debug",        "package",
-    "require", "coroutine",    "load",         "loadfile",
-    "dofile",  "pcall",        "xpcall",       "collectgarbage",
-    "next",    "setmetatable", "getmetatable", "rawset",
-    "rawget",  "rawequal",     "rawlen",       "warn",
-    "_G",      "_VERSION"};
-
-/* pairs in a fixed order: Lua's own depends on addresses, and ranks and
- * restarts must see the same case. */
-static const char PAIRS[] =
-    "local next, type, error, sort = next, type, error, table.sort\n"
-    "local function before(a, b)\n"
-    "  local ta, tb = type(a), type(b)\n"
-    "  if ta ~= tb then return ta < tb end\n"
-    "  return (ta == 'number' or ta == 'string') and a < b\n"
-    "end\n"
-    "return function(t)\n"
-    "  if type(t) ~= 'table' then\n"
-    "    error(\"bad argument #1 to 'pairs' (table expected, got \" ..\n"
-    "          type(t) .. ')', 2)\n"
-    "  end\n"
-    "  local keys, i = {}, 0\n"
-    "  for k in next, t do keys[#keys + 1] = k end\n"
-    "  sort(keys, before)\n"
-    "  return function()\n"
-    "    repeat i = i + 1 until keys[i] == nil or t[keys[i]] ~= nil\n"
-    "    return keys[i], t[keys[i]]\n"
-    "  end\n"
-    "end\n";
 
 static struct sandbox *sandbox_of(lua_State *L) {
   return *(struct sandbox **)lua_getextraspace(L);
@@ -80,89 +47,84 @@ static void *allocate(void *context, void *p, size_t old, size_t new) {
   return mem_resize(p, new, 1);
 }
 
-static void count_instructions(lua_State *L, lua_Debug *activation) {
-  struct sandbox *sandbox = sandbox_of(L);
-  sandbox->budget -= HOOK_STEP;
-  if (sandbox->budget > 0) return;
-  lua_getinfo(L, "Sl", activation);
-  lua_pushfstring(L,
-                  "%s:%d: the case is still running after %d million "
-                  "instructions: is there a loop that does not end?",
-                  activation->short_src, activation->currentline,
-                  SANDBOX_INSTRUCTIONS / 1000000);
+static double seconds(clockid_t clock) {
+  struct timespec now;
+  clock_gettime(clock, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* "case.lua:3: ", the line that runs or has called what runs. */
+static void push_place(lua_State *L) {
+  lua_Debug activation;
+  for (int level = 0; lua_getstack(L, level, &activation); level++) {
+    lua_getinfo(L, "Sl", &activation);
+    if (activation.currentline <= 0) continue;
+    lua_pushfstring(L, "%s:%d: ", activation.short_src, activation.currentline);
+    return;
+  }
+  lua_pushfstring(L, "%s: ", sandbox_of(L)->path);
+}
+
+/* " in 'find'", if a C function runs that has a name. */
+static void push_function(lua_State *L) {
+  lua_Debug activation;
+  lua_getstack(L, 0, &activation);
+  lua_getinfo(L, "Sn", &activation);
+  if (*activation.what == 'C' && activation.name != NULL)
+    lua_pushfstring(L, " in '%s'", activation.name);
+  else
+    lua_pushliteral(L, "");
+}
+
+static void give_up_after(lua_State *L, int most, const char *unit) {
+  push_place(L);
+  lua_pushfstring(L, "the case is still running after %d %s", most, unit);
+  push_function(L);
+  lua_pushliteral(L,
+                  ": is there a loop that does not end, or a pattern, a list "
+                  "or a text that is too long?");
+  lua_concat(L, 4);
   lua_error(L);
 }
 
-/* __index of the globals: a name that means nothing is an error, not nil. */
-static int complain_of_name(lua_State *L) {
-  const char *name = lua_tostring(L, 2);
-  if (name == NULL) name = "?";
-  for (size_t i = 0; i < sizeof LEFT_OUT / sizeof *LEFT_OUT; i++)
-    if (strcmp(name, LEFT_OUT[i]) == 0)
-      return luaL_error(L,
-                        "'%s' is not available: a case file can compute "
-                        "(math, string, table, utf8, pairs, ipairs, ...) but "
-                        "not reach files, programs or other code",
-                        name);
-  return luaL_error(L, "'%s' is not defined", name);
+/* The clock is asked for the time of the processor once it is late: that takes
+ * longer, but does not count what others do. */
+static void check_time(lua_State *L) {
+  struct sandbox *sandbox = sandbox_of(L);
+  const double now = seconds(CLOCK_MONOTONIC);
+  if (sandbox->begin == 0) sandbox->begin = now;
+  if (now - sandbox->begin < 1) return;
+  const double used = seconds(CLOCK_THREAD_CPUTIME_ID);
+  if (sandbox->begin_used == 0) sandbox->begin_used = used;
+  if (used - sandbox->begin_used < SANDBOX_SECONDS) return;
+  sandbox->late = true;
+  give_up_after(L, SANDBOX_SECONDS, "seconds");
 }
 
-static int print(lua_State *L) {
-  int n = lua_gettop(L);
-  for (int i = 1; i <= n; i++) {
-    const char *text = luaL_tolstring(L, i, NULL);
-    if (sandbox_of(L)->loud && base_rank() == 0)
-      fprintf(stderr, "%s%s", text, i < n ? "\t" : "\n");
-    lua_pop(L, 1);
-  }
-  return 0;
+void sandbox_charge(lua_State *L, double instructions) {
+  struct sandbox *sandbox = sandbox_of(L);
+  if (!sandbox->limited) return;
+  sandbox->budget -= instructions;
+  sandbox->unseen += instructions;
+  if (sandbox->budget < 0)
+    give_up_after(L, SANDBOX_INSTRUCTIONS / 1000000, "million instructions");
+  if (sandbox->unseen < HOOK_STEP) return;
+  sandbox->unseen = 0;
+  check_time(L);
 }
+
+static void count_instructions(lua_State *L, lua_Debug *activation) {
+  (void)activation;
+  sandbox_charge(L, HOOK_STEP);
+}
+
+bool sandbox_is_loud(lua_State *L) { return sandbox_of(L)->loud; }
+
+bool sandbox_was_late(const struct sandbox *sandbox) { return sandbox->late; }
 
 static int give_up(lua_State *L) {
   const char *message = lua_tostring(L, -1);
   FATAL("Lua fails outside a case: %s", message ? message : "no message");
-}
-
-static void open_libraries(lua_State *L) {
-  static const luaL_Reg LIBRARIES[] = {{LUA_GNAME, luaopen_base},
-                                       {LUA_MATHLIBNAME, luaopen_math},
-                                       {LUA_STRLIBNAME, luaopen_string},
-                                       {LUA_TABLIBNAME, luaopen_table},
-                                       {LUA_UTF8LIBNAME, luaopen_utf8}};
-  for (size_t i = 0; i < sizeof LIBRARIES / sizeof *LIBRARIES; i++) {
-    luaL_requiref(L, LIBRARIES[i].name, LIBRARIES[i].func, 1);
-    lua_pop(L, 1);
-  }
-}
-
-/* The same numbers from math.random on every rank and every day. */
-static void fix_random(lua_State *L) {
-  lua_getglobal(L, "math");
-  lua_getfield(L, -1, "randomseed");
-  lua_pushinteger(L, 1);
-  lua_call(L, 1, 0);
-  lua_pushnil(L);
-  lua_setfield(L, -2, "randomseed");
-  lua_pop(L, 1);
-}
-
-/* A table of what a case may use takes the place of Lua's globals. */
-static void fence_globals(lua_State *L) {
-  lua_newtable(L);
-  for (size_t i = 0; i < sizeof BASE / sizeof *BASE; i++) {
-    lua_getglobal(L, BASE[i]);
-    lua_setfield(L, -2, BASE[i]);
-  }
-  if (luaL_loadstring(L, PAIRS) != LUA_OK) give_up(L);
-  lua_call(L, 0, 1);
-  lua_setfield(L, -2, "pairs");
-  lua_pushcfunction(L, print);
-  lua_setfield(L, -2, "print");
-  lua_newtable(L);
-  lua_pushcfunction(L, complain_of_name);
-  lua_setfield(L, -2, "__index");
-  lua_setmetatable(L, -2);
-  lua_rawseti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
 }
 
 struct sandbox *sandbox_new(const char *path) {
@@ -175,9 +137,7 @@ struct sandbox *sandbox_new(const char *path) {
   sandbox->L = L;
   *(struct sandbox **)lua_getextraspace(L) = sandbox;
   lua_atpanic(L, give_up);
-  open_libraries(L);
-  fix_random(L);
-  fence_globals(L);
+  library_open(L);
   lua_sethook(L, count_instructions, LUA_MASKCOUNT, HOOK_STEP);
   return sandbox;
 }
@@ -218,6 +178,7 @@ const char *sandbox_call(struct sandbox *sandbox, int narguments,
   /* Debug builds trap 1/0, which Lua code may well write. */
   const bool trapping = base_trap_floating_point(false);
   sandbox->budget = SANDBOX_INSTRUCTIONS;
+  sandbox->begin = sandbox->begin_used = 0;
   sandbox->limited = true;
   int status = lua_pcall(sandbox->L, narguments, nresults, 0);
   sandbox->limited = false;

@@ -4,17 +4,20 @@
  *
  * Left out: os, io, debug, package, require, coroutine, everything that loads
  * code, and pcall and metatables, with which code could outlive the bound on
- * instructions (a handler that goes on, a finaliser that never ends). What C
- * functions of Lua's library do in one call is not counted.
+ * instructions (a handler that goes on, a finaliser that never ends). C
+ * functions of Lua's library are charged for what they do (library.h). As the
+ * cost of an instruction has no bound (texts of 100 MB that are joined or
+ * compared) the time is bounded too.
  */
 #ifndef TALUS_CASE_SANDBOX_H
 #define TALUS_CASE_SANDBOX_H
 
 #include <lua.h>
-#include <stdint.h>
+#include <stdbool.h>
 
 enum {
-  SANDBOX_INSTRUCTIONS = 100000000, /* of a whole case: a second or two */
+  SANDBOX_INSTRUCTIONS = 100000000, /* of one call: a second or two */
+  SANDBOX_SECONDS = 10,             /* of the processor, for one call */
   SANDBOX_MEGABYTES = 256
 };
 
@@ -27,6 +30,14 @@ lua_State *sandbox_state(const struct sandbox *sandbox);
 
 /* Whether print() is heard, on stderr. Off at the start. */
 void sandbox_set_loud(struct sandbox *sandbox, int loud);
+
+bool sandbox_is_loud(lua_State *L);
+
+/* Count work that C code does for the case as so many of its instructions. Ends
+ * in a Lua error if it has used up those that it may use, or its time. */
+void sandbox_charge(lua_State *L, double instructions);
+/* Whether a call has used up its time, which other ranks may not have. */
+bool sandbox_was_late(const struct sandbox *sandbox);
 
 /* Run `text`, leave what it returns, cut or filled up to one value, on the
  * stack. Returns NULL, or what went wrong, as file:line: message, owned by the
