@@ -14,6 +14,7 @@
 #include "talus/rheology.h"
 #include "talus/run.h"
 #include "talus/run_size.h"
+#include "talus/same_case.h"
 #include "talus/signals.h"
 #include "talus/spelling.h"
 
@@ -78,6 +79,12 @@ static struct case_file *load_case(const struct command_line *line) {
   if (dimension != DIM)
     USER_ERROR("%s is a case of dimension %d: start it with talus or talus%dd",
                line->case_path, dimension, dimension);
+  const char *different = same_case_difference(file);
+  if (different != NULL)
+    USER_ERROR(
+        "%s: ranks see different values of %s: do they run on machines with "
+        "different libraries? A case must be the same on each of them",
+        line->case_path, different);
   say_notes(line, file);
   return file;
 }

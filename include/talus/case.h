@@ -19,6 +19,7 @@
 #define TALUS_CASE_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #include "talus/params.h"
@@ -74,6 +75,12 @@ void case_print(const struct case_file *file, FILE *f);
 /* Writes the same as csv: a header `key,value,unit,origin`, origin one of
  * default, case, command line. Fields are quoted where csv needs it. */
 void case_write_parameters(const struct case_file *file, FILE *f);
+
+/* The checksum of row i of what is in use (below) or, behind the rows, of what
+ * function i returned while the case was loaded. Returns its key, which the
+ * case owns; NULL past the last. */
+const char *case_checksum(const struct case_file *file, int i,
+                          uint64_t *checksum);
 
 /* Whether a field, a dataset or an output of some closure has this name, so
  * that a tracer cannot have it. */

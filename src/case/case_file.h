@@ -12,6 +12,7 @@
 
 #include <lua.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #include "keys.h"
@@ -50,6 +51,7 @@ struct case_function {
   bool is_viscosity;      /* of shear rate, pressure, time; else of x */
   int nresults, result;   /* it returns so many numbers, this one is meant */
   double most;            /* largest size of a number it may return */
+  uint64_t checksum;      /* of what it returned while the case was loading */
   char name[PARAMS_NAME_LENGTH]; /* what it returned last, if a name */
 };
 
@@ -134,6 +136,11 @@ double read_number(struct case_file *file, const struct key *key,
 /* "; did you mean `x`?" if a word looks like it, then all words. */
 void read_suggest(const char *word, int n, const char *const *names,
                   size_t size, char *text);
+
+/* checksum.c */
+
+/* The checksum goes on with n bytes. */
+uint64_t checksum_add(uint64_t checksum, const void *data, size_t n);
 
 /* function.c */
 

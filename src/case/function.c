@@ -54,6 +54,13 @@ void function_fail(struct case_function *function, const double x[3],
   read_fail_at(file, function->path, "%s %s", call, message);
 }
 
+/* While all ranks do the same, what is returned counts in the checksum. */
+static void add_result(struct case_function *function, const void *result,
+                       size_t n) {
+  if (function->file->loading)
+    function->checksum = checksum_add(function->checksum, result, n);
+}
+
 /* Leaves nresults values on the stack. */
 static void call(struct case_function *function, const double x[3]) {
   struct case_file *file = function->file;
@@ -63,6 +70,17 @@ static void call(struct case_function *function, const double x[3]) {
   for (int d = 0; d < n; d++) lua_pushnumber(L, x[d]);
   const char *error = sandbox_call(file->sandbox, n, function->nresults);
   if (error != NULL) function_fail(function, x, "fails: %s", error);
+}
+
+/* What depends on more than its arguments is not the same on other ranks, which
+ * ask at other points. */
+static void check_again(struct case_function *function, const double x[3],
+                        double first, double second) {
+  if (first == second) return;
+  function_fail(function, x,
+                "returned %.17g and %.17g: it must depend on its arguments "
+                "alone, not on math.random or on what it did before",
+                fmin(first, second), fmax(first, second));
 }
 
 static double eval(void *context, const double x[3]) {
@@ -80,6 +98,7 @@ static double eval(void *context, const double x[3]) {
     function_fail(function, x, "returned %g, a number of size <= %g is needed",
                   value, function->most);
   lua_pop(L, function->nresults);
+  add_result(function, &value, sizeof value);
   return value;
 }
 
@@ -96,22 +115,29 @@ struct function function_result(struct case_file *file,
 }
 
 /* Infinity is allowed, as at rest: eta_max cuts it. */
+static double viscosity(struct case_function *function, const double at[3]) {
+  lua_State *L = function->file->L;
+  call(function, at);
+  if (lua_type(L, -1) != LUA_TNUMBER)
+    function_fail(function, at, "returned %s, a viscosity >= 0 is needed",
+                  luaL_typename(L, -1));
+  const double eta = lua_tonumber(L, -1);
+  if (!(eta >= 0))
+    function_fail(function, at, "returned %g, a viscosity >= 0 is needed", eta);
+  lua_pop(L, 1);
+  add_result(function, &eta, sizeof eta);
+  return eta;
+}
+
 static void eval_viscosity(void *context, double time, int32_t n,
                            const double *shear_rate, const double *pressure,
                            double *eta) {
   struct case_function *function = (struct case_function *)context;
-  lua_State *L = function->file->L;
   for (int32_t i = 0; i < n; i++) {
     const double at[3] = {shear_rate[i], pressure[i], time};
-    call(function, at);
-    if (lua_type(L, -1) != LUA_TNUMBER)
-      function_fail(function, at, "returned %s, a viscosity >= 0 is needed",
-                    luaL_typename(L, -1));
-    eta[i] = lua_tonumber(L, -1);
-    if (!(eta[i] >= 0))
-      function_fail(function, at, "returned %g, a viscosity >= 0 is needed",
-                    eta[i]);
-    lua_pop(L, 1);
+    eta[i] = viscosity(function, at);
+    if (function->file->loading)
+      check_again(function, at, eta[i], viscosity(function, at));
   }
 }
 
@@ -135,6 +161,7 @@ const char *function_name(struct case_function *function, const double x[3]) {
                   (size_t)lua_rawlen(L, -1), PARAMS_NAME_LENGTH - 1);
   snprintf(function->name, sizeof function->name, "%s", lua_tostring(L, -1));
   lua_pop(L, 1);
+  add_result(function, function->name, strlen(function->name));
   return function->name;
 }
 
@@ -154,8 +181,13 @@ static void try_sides(struct case_file *file, const double x[3], int i) {
   for (int side = 0; side < 2 * params->dimension; side++) {
     int on_axis = i;
     for (int d = 0; d < side / 2; d++) on_axis /= TRIES;
-    if (on_axis % TRIES == (side % 2 ? TRIES - 1 : 0))
-      params->boundary_select(params->boundary_context, side, x);
+    if (on_axis % TRIES != (side % 2 ? TRIES - 1 : 0)) continue;
+    const int first = params->boundary_select(file, side, x);
+    if (first != params->boundary_select(file, side, x))
+      function_fail(
+          file->side_function[side], x,
+          "returned two names, one after the other: it must depend on "
+          "the position alone");
   }
 }
 
@@ -176,7 +208,8 @@ void function_try_all(struct case_file *file) {
     for (int k = 0; k < file->nfunctions; k++)
       if (!chooses_boundary(file, &file->functions[k]) &&
           !file->functions[k].is_viscosity)
-        eval(&file->functions[k], x);
+        check_again(&file->functions[k], x, eval(&file->functions[k], x),
+                    eval(&file->functions[k], x));
   }
 }
 
