@@ -98,10 +98,17 @@ static int read_option(int argc, char *argv[], int i,
   return i;
 }
 
-/* The words before and behind `=` of two overrides. */
-static bool same_name(const char *a, const char *b) {
-  const size_t n = strcspn(a, "=");
-  return strncmp(a, b, n + 1) == 0;
+void command_line_refuse_twice(int n, char *const words[]) {
+  for (int i = 0; i < n; i++) {
+    const size_t length = strcspn(words[i], "=");
+    if (words[i][length] == '\0') continue;
+    for (int k = 0; k < i; k++) {
+      if (strncmp(words[i], words[k], length + 1) == 0 &&
+          strcmp(words[i], words[k]) != 0)
+        USER_ERROR("%s and %s on the command line: give one of them", words[k],
+                   words[i]);
+    }
+  }
 }
 
 static void add_override(char *word, struct command_line *line) {
@@ -113,12 +120,6 @@ static void add_override(char *word, struct command_line *line) {
   if (line->noverrides == COMMAND_LINE_MAX_OVERRIDES)
     USER_ERROR("more than %d overrides on the command line",
                COMMAND_LINE_MAX_OVERRIDES);
-  for (int i = 0; i < line->noverrides; i++) {
-    const char *before = line->overrides[i];
-    if (same_name(before, word) && strcmp(before, word) != 0)
-      USER_ERROR("%s and %s on the command line: give one of them", before,
-                 word);
-  }
   line->overrides[line->noverrides++] = word;
 }
 
@@ -138,6 +139,7 @@ void command_line_read(int argc, char *argv[], bool running,
       i = read_option(argc, argv, i, given, line);
     }
   }
+  command_line_refuse_twice(line->noverrides, line->overrides);
   if (line->case_path == NULL)
     USER_ERROR("which case? Say: talus %s CASE.lua [name=value ...]",
                running ? "run" : "check");

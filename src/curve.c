@@ -257,6 +257,7 @@ int command_rheology(int argc, char *argv[]) {
   bool csv = false;
   rheology_init(&rheology, model);
   set_units(&rheology);
+  command_line_refuse_twice(argc - 1, argv + 1);
   for (int i = 1; i < argc; i++) {
     if (strcmp(argv[i], "--csv") == 0)
       csv = true;

@@ -98,7 +98,7 @@ static int command_run(int argc, char *argv[]) {
   command_line_read(argc, argv, true, &line);
   struct case_file *file = load_case(&line);
   const struct params *params = case_params(file);
-  char directory[PARAMS_NAME_LENGTH + 8];
+  char directory[sizeof params->name + 8];
   snprintf(directory, sizeof directory, "%s.out", params->name);
   struct run_options options = {
       .directory = line.directory != NULL ? line.directory : directory,

@@ -4,10 +4,10 @@
  *
  * A case is a Lua 5.4 file that returns one table. It runs in a sandbox: math,
  * string, table, utf8 and the plain functions of the language, no files, no
- * processes, no other modules, bounded instructions and memory, and the same
- * pseudo-random numbers each time, so that every rank and every restart sees
- * the same case. `param(name, default, help)` returns a value that the command
- * line may override as name=value.
+ * processes, no other modules, bounded instructions, time and memory, the same
+ * pseudo-random numbers each time and no addresses, so that every rank and
+ * every restart sees the same case. `param(name, default, help)` returns a
+ * value that the command line may override as name=value.
  *
  * Every key of the returned table is checked against one table of known keys
  * (src/case/keys.c), which `talus help case` prints. Whatever is wrong with a

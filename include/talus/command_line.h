@@ -27,6 +27,9 @@ struct command_line {
 void command_line_read(int argc, char *argv[], bool running,
                        struct command_line *line);
 
+/* A USER_ERROR if two of the words name=value give one name other values. */
+void command_line_refuse_twice(int n, char *const words[]);
+
 /* The case file among the words behind `run` or `check`, and the overrides,
  * as command_line_read would find them; never fails. */
 void command_line_find_case(int argc, char *argv[], struct command_line *line);

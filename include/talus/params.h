@@ -105,7 +105,7 @@ enum limiter {
 };
 
 struct params {
-  char name[PARAMS_NAME_LENGTH]; /* case name, gives the output directory */
+  char name[256]; /* of the case, gives the output directory */
   char title[256];
   int dimension; /* 2 or 3 */
 

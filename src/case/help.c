@@ -34,10 +34,11 @@ static const char INTRODUCTION[] =
     "consistent set\n"
     "will do. A thing with options is { \"name\", option = value }; without "
     "options the\n"
-    "name is enough. Functions of position take x, y and, in 3D, z. The value "
-    "that\n"
-    "param() gives may be a number, a text, true or false, or a list of "
-    "numbers.\n";
+    "name is enough. Functions of position take x, y and, in 3D, z, and depend "
+    "on them\n"
+    "alone: ranks and steps ask in any order. The value that param() gives may "
+    "be a\n"
+    "number, a text, true or false, or a list of numbers.\n";
 
 /* `text` in lines of WIDTH, each begun by `indent` blanks. */
 static void print_wrapped(FILE *f, int indent, const char *text) {

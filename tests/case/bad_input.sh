@@ -252,6 +252,11 @@ param("a", 1, "")'
 
 refuses check 'level_40.lua:2: domain.level = 40' check ../cases/level_40.lua
 
+bad_edit pattern 'pattern.lua:9: .*still running after 100 .* in .find' \
+  'stop = 1' 'stop = ("a"):rep(99):find(("a-"):rep(30) .. "b")'
+bad_edit random 'random.lua:5: grains.shape.*it must depend on its arguments' \
+  'return math.min' 'return math.random() + math.min'
+
 # the command line
 echo "local n = param('level', 5, 'finest level')
 param('times', {1, 2}, 'a list')
@@ -275,6 +280,8 @@ refuses override_twice 'level=5 and level=6 on the command line: give one' \
   run ../cases/param.lua level=5 level=6
 refuses override_first 'cannot read the case level=5: .*the case comes first' \
   run level=5
+refuses key_twice 'd=1 and d=2 on the command line: give one' \
+  rheology mu_i d=1 d=2
 refuses directory_missing '-o needs a value: -o DIR' \
   run ../cases/good.lua -o --restart
 refuses directory_option '-o -x: a directory is needed; .* say ./-x' \
