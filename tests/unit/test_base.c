@@ -66,6 +66,18 @@ START_TEST(user_error_says_one_line_and_ends_with_2) {
 }
 END_TEST
 
+static void raise_user_error_alone(void) {
+  base_begin(NULL, NULL);
+  USER_ERROR_ALONE("shape(%g) returned nil", 0.5);
+}
+
+START_TEST(user_error_of_one_rank_ends_with_2) {
+  char words[TEXT_LENGTH];
+  ck_assert_int_eq(run_in_child(raise_user_error_alone, words), EXIT_USER);
+  assert_contains(words, "talus: error: shape(0.5) returned nil\n");
+}
+END_TEST
+
 START_TEST(user_error_finalizes_mpi_and_ends_with_2) {
   char words[TEXT_LENGTH];
   ck_assert_int_eq(run_in_child(raise_user_error_in_mpi, words), EXIT_USER);
@@ -351,6 +363,7 @@ static TCase *error_case(void) {
   TCase *tcase = tcase_create("error");
   tcase_add_test(tcase, user_error_says_one_line_and_ends_with_2);
   tcase_add_test(tcase, user_error_finalizes_mpi_and_ends_with_2);
+  tcase_add_test(tcase, user_error_of_one_rank_ends_with_2);
   tcase_add_test(tcase, fatal_says_where_and_ends_with_4);
   tcase_add_test(tcase, fatal_in_mpi_aborts_with_4);
   tcase_add_test(tcase, check_names_condition_and_place);
