@@ -84,20 +84,25 @@ static int print(lua_State *L) {
   return 0;
 }
 
-/* The arguments of string.format before it sees them. */
+/* Before string.format begins: %p becomes %s, and what either shows of a table
+ * or a function is the name of its type. */
 static double prepare_format(lua_State *L) {
-  const char *at = luaL_checkstring(L, 1);
-  for (int i = 2; (at = strchr(at, '%')) != NULL; at++) {
+  const int top = lua_gettop(L);
+  size_t n;
+  const char *format = luaL_checklstring(L, 1, &n);
+  luaL_Buffer buffer;
+  char *at = luaL_buffinitsize(L, &buffer, n + 1), *end = at + n;
+  memcpy(at, format, n + 1);
+  for (int i = 2; (at = memchr(at, '%', (size_t)(end - at))) != NULL; at++) {
     if (*++at == '%') continue;
     at += strspn(at, "-+ #0123456789.");
-    if (*at == 'p')
-      luaL_error(L,
-                 "'%%p' shows an address, which differs from rank to rank and "
-                 "from run to run");
-    if (*at == 's') hide_address(L, i);
-    if (*at == '\0') break;
+    if (at == end) break;
+    if (*at == 'p') *at = 's';
+    if (*at == 's' && i <= top) hide_address(L, i);
     i++;
   }
+  luaL_pushresultsize(&buffer, n);
+  lua_replace(L, 1);
   return 0;
 }
 

@@ -149,7 +149,12 @@ static const struct {
      "tablefunction1.5nil"},
     {"return string.format('%5.2f %s %s %% %d', 1, {}, 'x', 3)",
      " 1.00 table x % 3"},
-    {"return string.format('%p', {})", "x.lua:1: '%p' shows an address"},
+    {"return string.format('%p|%-9p|%%p\\0%s', {}, print, {})",
+     "table|function |%p"},
+    {"return (string.format('\\0%s', {}):gsub('%z', ''))", "table"},
+    {"return string.format('%s')",
+     "x.lua:1: bad argument #2 to 'format' (no value)"},
+    {"return string.format('%', 1)", "x.lua:1: invalid conversion '%' to"},
     {"local s = '' for k in pairs({ [true] = 1, a = 2, [1.5] = 3, [{}] = 4,\n"
      "  [false] = 5, [1] = 6 }) do s = s .. tostring(k) .. ' ' end return s",
      "false true 1 1.5 a table "},
