@@ -10,7 +10,7 @@ static const char *const TAKEN[] = {
     /* simulation */
     "fraction", "pressure", "density", "viscosity", "velocity", "acceleration",
     "frozen", "plane", "band", "drag", "shear_rate", "acceleration_", "face_",
-    "velocity_", "viscous_", "normal_", "old_", "cell_",
+    "velocity_", "viscous_", "normal_", "old_", "cell_", "source", "carrier",
     /* snapshots and checkpoints */
     "cells", "vertices", "level", "levels", "fields", "parameters", "partition",
     "state", "time", "step"};
