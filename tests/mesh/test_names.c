@@ -31,6 +31,7 @@ START_TEST(no_tracer_can_have_the_name_of_a_field) {
   p.theta = 0.5;
   p.side_walls.mu = 0.1;
   p.side_walls.width = 1;
+  p.permeable = true;
   p.ntracers = 1;
   strcpy(p.tracer[0].name, "dyed");
   rheology_init(&p.grains.rheology, rheology_find("lee_huang"));
