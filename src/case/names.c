@@ -13,7 +13,9 @@ static const char *const TAKEN[] = {
     "velocity_", "viscous_", "normal_", "old_", "cell_", "source", "carrier",
     /* snapshots and checkpoints */
     "cells", "vertices", "level", "levels", "fields", "parameters", "partition",
-    "state", "time", "step"};
+    "state", "time", "step",
+    /* columns of profile.csv */
+    "x", "y", "height"};
 
 static bool is_output(const char *name) {
   const struct rheology_model *model;
