@@ -39,17 +39,23 @@ static double draw(struct walk *walk) {
   return (double)(walk->random >> 11) * 0x1p-53;
 }
 
-/* The number of levels and the sample points of the box around a cell that
- * reaches `width` cells beyond it, cut to the domain. */
+/* The domain along axis d. */
+static void extent(const struct params *params, int d, double *low,
+                   double *high) {
+  *low = params->origin[d];
+  *high = *low + params->size * params->trees[d];
+}
+
+/* Place sample k in the box around a cell that reaches `width` cells beyond it,
+ * cut to the domain. */
 static void sample_point(const struct walk *walk, const struct cell *cell,
                          double width, int k, double x[3]) {
-  const struct params *params = walk->params;
   for (int d = 0; d < DIM; d++, k /= walk->samples) {
-    const double reach = (0.5 + width) * walk->h;
-    const double low = params->origin[d];
-    const double high = low + params->size * params->trees[d];
-    const double begin = max2(low, cell->x[d] - reach);
-    const double end = min2(high, cell->x[d] + reach);
+    const double beyond = (0.5 + width) * walk->h;
+    double low, high;
+    extent(walk->params, d, &low, &high);
+    const double begin = max2(low, cell->x[d] - beyond);
+    const double end = min2(high, cell->x[d] + beyond);
     /* just inside, as the sides of cells are often the sides of things */
     const double at = (k % walk->samples + 1e-6) / (walk->samples - 1 + 2e-6);
     x[d] = begin + (end - begin) * at;
@@ -107,11 +113,12 @@ static bool wants_velocity(const struct walk *walk, const struct cell *cell,
   for (int e = 0; e < DIM; e++) {
     const struct function *u = &walk->params->velocity[e];
     for (int d = 0; d < DIM && u->eval != NULL; d++) {
-      double value[3];
+      double value[3], low, high;
+      extent(walk->params, d, &low, &high);
       for (int side = -1; side <= 1; side++) {
         double x[3] = {0};
         memcpy(x, cell->x, sizeof cell->x);
-        x[d] += side * walk->h;
+        x[d] = min2(high, max2(low, x[d] + side * walk->h));
         value[side + 1] = u->eval(u->context, x);
       }
       if (fabs(value[1] - 0.5 * (value[0] + value[2])) > criterion->threshold)
