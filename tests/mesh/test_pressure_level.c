@@ -114,7 +114,8 @@ static struct diagnostics collapse(enum pressure_at at, bool closed,
   return d;
 }
 
-/* With the mean over the box instead the front is off by 7 % in 2D. */
+/* With the mean over the box instead the front is off by 7 % in 2D, by 0.9 % on
+ * the coarser grid in 3D. */
 START_TEST(a_column_collapses_as_under_an_open_sky) {
   bool done = true;
   const struct diagnostics open = collapse(PRESSURE_AT_GAS, false, &done);
@@ -123,7 +124,7 @@ START_TEST(a_column_collapses_as_under_an_open_sky) {
   ck_assert(done);
   ck_assert_double_le(fabs(gas.front / open.front - 1), 1e-3);
   ck_assert_double_le(fabs(gas.height / open.height - 1), 1e-3);
-  ck_assert_double_ge(fabs(box.front / open.front - 1), 1e-2);
+  ck_assert_double_ge(fabs(box.front / open.front - 1), 5e-3);
 }
 END_TEST
 
