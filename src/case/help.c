@@ -132,7 +132,7 @@ static const char CREEP[] =
     "    rho g sin(alpha) H^2/(2 eta_max), tan(alpha) = mu_s,\n"
     "  H their height at the start. 5000 rho sin(alpha) sqrt(g H^3) keeps "
     "that\n"
-    "  below 1e-4 sqrt(g H). Besides, a skin of a third of a cell settles\n"
+    "  below 1e-4 sqrt(g H). Besides, a skin of a quarter of a cell settles\n"
     "  whatever the cap, as friction vanishes with the pressure at a surface:\n"
     "  the top of a slope of 0.2 (mu_s = 0.38) sinks by that until t = 50\n"
     "  sqrt(H/g) on cells of H/8 and H/16, eta_max = 1e3 and 1e4.\n";
