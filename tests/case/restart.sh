@@ -11,7 +11,9 @@ directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory" || exit 1
 limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
-column="$root/examples/column.lua level=7 stop=2 times=0.1,0.66"
+shape="$root/examples/column.lua level=7 times=0.1,0.66"
+column="$shape stop=2"
+endless="$shape stop=1e4"
 box="$root/examples/box3d.lua level=4 stop=0.5"
 failures=0
 
@@ -101,7 +103,7 @@ for n in 1 3; do
   same "box on $n" box-$n pieces-$n
 done
 cp -r parts-1 again
-must 1 talus2d run $column -o again --quiet --restart stop=2.5
+must 1 talus2d run $shape stop=2.5 -o again --quiet --restart
 [ "$(own_words < output)" = "talus: restart with stop = 2.5 (was 2)" ] ||
   complain "another stop"
 rm -r again
@@ -122,13 +124,13 @@ for pair in "1 2" "2 1" "1 3"; do
 done
 
 # A signal ends the step, and says how to go on.
-stops 1 talus2d run $column stop=1e4 -o signal --max-walltime 0.2
+stops 1 talus2d run $endless -o signal --max-walltime 0.2
 grep -q -e --restart output || complain "no word of how to go on"
 state signal 'stopped before its end.*by --max-walltime at step'
 state whole-1 'finished: done at step .*, time 2:'
 for signal in INT TERM HUP; do
   rm -rf signal
-  "$build/talus2d" run $column stop=1e4 -o signal --max-walltime 30 \
+  "$build/talus2d" run $endless -o signal --max-walltime 30 \
     > output 2>&1 &
   pid=$!
   for _ in $(seq 200); do
@@ -141,7 +143,7 @@ for signal in INT TERM HUP; do
   [ $status -eq 5 ] || complain "SIG$signal: exit status $status, not 5"
   state signal "stopped before its end.*by SIG$signal at step"
   step=$(last signal 1)
-  stops 1 talus2d run $column stop=1e4 -o signal --quiet --restart --max-steps 2
+  stops 1 talus2d run $endless -o signal --quiet --restart --max-steps 2
   [ "$(last signal 1)" -eq $((step + 2)) ] || complain "SIG$signal: went nowhere"
 done
 
