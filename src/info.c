@@ -21,7 +21,7 @@ static bool ends_in(const char *text, const char *end) {
   return n >= m && strcmp(text + n - m, end) == 0;
 }
 
-/* What of a csv file is told. */
+/* Parts of a csv file that are told. */
 struct table {
   struct csv_row header, last; /* the last complete row */
   long nrows;

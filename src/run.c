@@ -454,7 +454,7 @@ static struct verdict agree(const struct run *run) {
   return (struct verdict){all[0], all[1], all[2]};
 }
 
-/* What stops the run now; NULL: it goes on. */
+/* Give the reason to stop now; NULL: the run goes on. */
 static const char *reason_to_stop(const struct run *run,
                                   const struct verdict *verdict) {
   int64_t steps = run->sim->step - run->first_step;

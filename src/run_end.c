@@ -9,7 +9,7 @@ static bool begins(const char *line, const char *word) {
   return strncmp(line, word, strlen(word)) == 0;
 }
 
-/* What a line of the log makes of the state before it. */
+/* Give the state after a line of the log. */
 static enum run_end next_state(enum run_end state, const char *line) {
   if (begins(line, "talus ") && strstr(line, "-dimensional, "))
     return RUN_END_OPEN;

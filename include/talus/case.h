@@ -82,7 +82,7 @@ void case_write_parameters(const struct case_file *file, FILE *f);
 const char *case_checksum(const struct case_file *file, int i,
                           uint64_t *checksum);
 
-/* Whether a field, a dataset or an output of some closure has this name, so
+/* Tell if a field, a dataset or an output of some closure has this name, so
  * that a tracer cannot have it. */
 bool case_name_is_taken(const char *name);
 

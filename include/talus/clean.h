@@ -32,8 +32,8 @@ void clean_destroy(struct clean *clean);
 void clean_face_velocity(struct clean *clean, const struct mesh *mesh,
                          const bool *open, double *u_f);
 
-/* The same to div u_f = source [nleaves], 1/s, whose integral must vanish where
- * no patch is open; NULL: 0. Collective. */
+/* Make div u_f = source [nleaves], 1/s, whose integral must vanish where no
+ * patch is open; NULL: 0. Collective. */
 void clean_to_source(struct clean *clean, const struct mesh *mesh,
                      const bool *open, const double *source, double *u_f);
 

@@ -9,7 +9,7 @@
  * called by one rank alone. */
 int64_t count_check(int64_t n, int64_t most, const char *what);
 
-/* The same as an index or a count of MPI. */
+/* Give a count as an index or a count of MPI, checked. */
 static inline int32_t count_index(int64_t n, const char *what) {
   return (int32_t)(n <= INT32_MAX ? n : count_check(n, INT32_MAX, what));
 }

@@ -21,7 +21,7 @@ struct csv_mark {
   int64_t checksum; /* crc32 of these rows, ends of lines and all */
 };
 
-/* What a file is to hold, for csv_check. */
+/* Contents that csv_check asks of a file. */
 struct csv_expected {
   const char *name, *header;
   struct csv_mark mark;

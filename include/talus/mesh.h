@@ -139,7 +139,7 @@ void mesh_destroy(struct mesh *mesh);
  * values at the boundary are taken as 0 (for corrections). Collective. */
 void mesh_fill(const struct mesh *mesh, int n, double *const v[],
                const struct bc *const bc[], bool homogeneous);
-/* The same for potentials of forces per mass: not dv/dx but dv/dx / rho goes on
+/* Fill potentials of forces per mass: not dv/dx but dv/dx / rho goes on
  * through a face, rho [ncells] filled. Pressure at an interface is one: a slope
  * taken across it would give the children of a gas leaf the pressure of grains,
  * which is rho_1/rho_2 too much for gas. Linear v is still exact where rho is

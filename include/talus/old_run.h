@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What an earlier run left in the directory of a new one.
+/* Files that an earlier run left in the directory of a new one.
  *
  * Every file proves by its own first words that talus wrote it: the header of a
  * table, the seal of a checkpoint, the heading of a log. HDF5 files and logs

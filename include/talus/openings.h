@@ -41,7 +41,7 @@ int openings_patch(void *context, int side, const double x[3], double h,
 int openings_patch_number(int boundary, int axis);
 /* Find the level that openings ask of leaf i, at most one above its own. */
 int openings_level(const struct simulation *sim, int32_t f);
-/* The same of a cell of this level with centre x. Pure. */
+/* Give that level for a cell of this level with centre x. Pure. */
 int openings_level_at(const struct params *params, const double x[DIM],
                       int level);
 /* Are all faces as fine as openings_level asks? Collective. */

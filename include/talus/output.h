@@ -14,7 +14,7 @@ void output_check_directory(const char *directory);
 /* Make the directory, and those above it, if missing. Collective; USER_ERROR
  * if that fails. */
 void output_make_directory(const char *directory);
-/* Whether the directory holds a table, the parameters or the log of a run, and
+/* Tell if the directory holds a table, the parameters or the log of a run, and
  * not a checkpoint alone. Collective. */
 bool output_holds_tables(const char *directory);
 /* `directory`/`name`; the caller frees it with mem_free. Not collective. */

@@ -89,7 +89,7 @@ struct criterion {
   struct function function; /* FUNCTION: level as a real number */
 };
 
-/* Whether gas that grains enclose leaves through them (percolation.h). */
+/* Passage of gas that grains enclose (percolation.h). */
 enum permeability {
   PERMEABLE_AUTO, /* if the viscosity of the grains depends on pressure */
   PERMEABLE_NO,
@@ -124,7 +124,7 @@ struct params {
   /* Where they hold, on sides that are divided (side_map.h); NULL: one boundary
    * all over. Owned by whoever made the struct. */
   const struct side_map *side_map[6];
-  /* What of each side the patches cover, in words */
+  /* Parts of each side that the patches cover, in words */
   char cover[PARAMS_MAX_BOUNDARIES][PARAMS_LINE_LENGTH];
   int ncovers;
 

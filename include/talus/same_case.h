@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether all ranks have understood a case alike. */
+/* Test that all ranks have understood a case alike. */
 #ifndef TALUS_SAME_CASE_H
 #define TALUS_SAME_CASE_H
 

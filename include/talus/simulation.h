@@ -78,7 +78,7 @@ struct simulation {
                                  * without the friction of side walls */
   struct field *drag;           /* of side walls (side_walls.h); NULL: none */
 
-  /* Of gas that leaves through the grains (percolation.h); NULL: none may */
+  /* Gas that leaves through the grains (percolation.h); NULL: none may */
   struct field *source;  /* of volume, 1/s: < 0 where gas is enclosed */
   struct field *carrier; /* velocity on faces that carries c */
 

@@ -70,7 +70,7 @@ static double physical_memory(void) {
   return pages > 0 && size > 0 ? (double)pages * (double)size : HUGE_VAL;
 }
 
-/* What RLIMIT_AS leaves of the address space. */
+/* Give the address space that RLIMIT_AS leaves. */
 static double address_space_left(void) {
   struct rlimit limit;
   double used = 0;

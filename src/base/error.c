@@ -24,7 +24,7 @@ static int size = 1;
 static const char *const LAUNCHER_RANK[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK",
                                             "PMI_RANK", "SLURM_PROCID"};
 
-/* What a launcher says of the rank, NULL without one. */
+/* Give the rank as the launcher names it, NULL without one. */
 static const char *launcher_rank(void) {
   const char *text = NULL;
   for (size_t k = 0; k < sizeof LAUNCHER_RANK / sizeof *LAUNCHER_RANK; k++)

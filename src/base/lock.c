@@ -17,7 +17,7 @@
 
 enum { WORDS_LENGTH = 256, TRIALS = 100, PLACE_LENGTH = 4096 };
 
-/* What came of an attempt, on rank 0. */
+/* Outcomes of an attempt, on rank 0. */
 enum outcome { TAKEN, ABSENT, HELD, WITHOUT, REFUSED };
 
 static int held = -1;   /* descriptor of run.lock; -1: no lock is held */

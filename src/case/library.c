@@ -11,12 +11,12 @@
 #include "sandbox.h"
 #include "talus/error.h"
 
-/* What a case may use of Lua's base library. */
+/* Names of Lua's base library that a case may use. */
 static const char *const BASE[] = {"assert",   "error",  "ipairs", "math",
                                    "select",   "string", "table",  "tonumber",
                                    "tostring", "type",   "utf8"};
 
-/* What it may look for in vain. */
+/* Names that it may look for in vain. */
 static const char *const LEFT_OUT[] = {
     "os",      "io",           "debug",        "package",
     "require", "coroutine",    "load",         "loadfile",
@@ -301,7 +301,7 @@ static void replace_functions(lua_State *L) {
   lua_register(L, "tostring", to_string);
 }
 
-/* The same numbers from math.random on every rank and every day. */
+/* Give math.random the same numbers on every rank and every day. */
 static void fix_random(lua_State *L) {
   lua_getglobal(L, LUA_MATHLIBNAME);
   lua_getfield(L, -1, "randomseed");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What a case may call: Lua's base functions that compute, math, string, table
+ * A case may call Lua's base functions that compute, math, string, table
  * and utf8, changed in two ways.
  *
  * Every rank and every run sees the same: no address shows in a text, pairs

@@ -440,7 +440,7 @@ static void add_text(struct match *m, luaL_Buffer *b, const char *s,
   }
 }
 
-/* What takes the place of a match, from argument 3. */
+/* Add the text that replaces a match, from argument 3. */
 static void add_value(struct match *m, luaL_Buffer *b, const char *s,
                       const char *end) {
   lua_State *L = m->L;

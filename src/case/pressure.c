@@ -48,7 +48,7 @@ static void add_place(struct case_file *file, const char *path,
            origin);
 }
 
-/* What stands behind `at` is on top, and is taken off. */
+/* Read the value of `at`, which is on top, and take it off. */
 static void read_place(struct case_file *file, const char *path) {
   lua_State *L = file->L;
   int at = 0;

@@ -36,7 +36,7 @@ bool sandbox_is_loud(lua_State *L);
 /* Count work that C code does for the case as so many of its instructions. Ends
  * in a Lua error if it has used up those that it may use, or its time. */
 void sandbox_charge(lua_State *L, double instructions);
-/* Whether a call has used up its time, which other ranks may not have. */
+/* Tell if a call has used up its time, which other ranks may not have. */
 bool sandbox_was_late(const struct sandbox *sandbox);
 
 /* Run `text`, leave what it returns, cut or filled up to one value, on the

@@ -35,7 +35,7 @@ static void mark_surface(const struct mesh *mesh, const double *c,
   }
 }
 
-/* What a criterion may ask of a leaf. */
+/* Wishes of a criterion for a leaf. */
 enum { NOTHING, KEEP, DIVIDE };
 
 struct wanted {

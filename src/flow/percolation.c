@@ -52,7 +52,7 @@ static bool is_at_opening(const struct simulation *sim, int32_t i) {
   return false;
 }
 
-/* What is known of a set of gas. */
+/* Numbers of a set of gas. */
 enum { SET_OPEN, SET_VOLUME, SET_PRESSURE, SET_SIZE };
 
 static void measure_sets(const struct simulation *sim, const int32_t *set,

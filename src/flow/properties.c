@@ -233,7 +233,7 @@ static inline double shear_squared(double grad[DIM][DIM]) {
   return sum;
 }
 
-/* Of the faces beside the surface. */
+/* Set 2 D:D at the faces beside the surface. */
 static void skin_shear_squared(const struct mesh *mesh, const struct skin *skin,
                                double *const u[DIM], double *squared_f) {
   for (int32_t k = 0; k < skin->n; k++) {

@@ -165,7 +165,7 @@ static void add_walls(struct simulation *sim) {
                        REMAP_AVERAGE, false);
 }
 
-/* What gas needs that leaves through the grains (percolation.h). */
+/* Add the scratch of gas that leaves through the grains (percolation.h). */
 static void add_percolation(struct simulation *sim) {
   sim->source = add_cell(sim, "source", "1/s", "", REMAP_NONE, false);
   sim->carrier = add_face(sim, "carrier");

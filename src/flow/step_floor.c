@@ -97,8 +97,8 @@ static void place_text(const struct worst *worst, size_t size, char *text) {
              worst->x[0], worst->x[1], worst->x[2]);
 }
 
-/* What was to blame for dt, by the bound that comes nearest: the state is that
- * after the step, which has bounds of its own. */
+/* Name the cause of dt, the bound that comes nearest: the state is that after
+ * the step, which has bounds of its own. */
 static void cause_text(const struct simulation *sim, const struct worst *flow,
                        const struct worst *forces, size_t size, char *text) {
   /* 0.1: the part of sqrt(h/g) that time_step.h allows */

@@ -20,8 +20,8 @@
 
 enum { PATH_LENGTH = 4096, NAME_LENGTH = 128 };
 
-/* Of the layout in checkpoint.h; raise it whenever a file of before can no
- * longer be read. The files of format 1 had no seal. */
+/* Number of the layout in checkpoint.h; raise it whenever a file of before can
+ * no longer be read. The files of format 1 had no seal. */
 enum { FORMAT = 2 };
 
 /* How far round-off may take a volume fraction out of [0, 1]. */

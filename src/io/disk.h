@@ -11,7 +11,7 @@ const char *disk_advice(const char *path, int error);
 /* Ends the program (FATAL): `path` cannot be written, for this errno. */
 _Noreturn void disk_fail(const char *path, int error);
 
-/* What an errno of fsync is worth: 0 for a file system that cannot sync. */
+/* Judge an errno of fsync: 0 for a file system that cannot sync. */
 int disk_sync_error(int error);
 
 /* Brings the directory of a file to the disk, so that the names in it last.

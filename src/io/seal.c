@@ -17,7 +17,7 @@
 
 enum { PIECE = 1 << 20 }; /* bytes read at once */
 
-/* What the text of a seal says. */
+/* Contents of the text of a seal. */
 struct seal {
   int format;
   char version[SEAL_VERSION_LENGTH];
