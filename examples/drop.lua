@@ -3,7 +3,7 @@
 -- Question: does a block of grains that lands run out as far as one that starts
 -- on the floor with the same speed? It must: the gas between grains and floor
 -- leaves through the grains. A code whose gas cannot do so lets the block slide
--- on a film of it, here to a front of 3.79 instead of 2.26 at level 7 (say
+-- on a film of it, here to a front of 3.73 instead of 2.25 at level 7 (say
 -- permeable=no to see it).
 --
 -- Geometry: the right half of a block, 0.4 wide and 0.8 high, above a rough

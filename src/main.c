@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* talus2d and talus3d: the commands of design.md, section 7. */
+/* talus2d and talus3d: the commands that README.md lists. */
 #include <errno.h>
 #include <mpi.h>
 #include <stdio.h>
@@ -181,7 +181,7 @@ int main(int argc, char *argv[]) {
   const bool help = command != NULL && command->run != command_plot &&
                     command_asks_help(argc - 2, argv + 2);
   const bool parallel = command != NULL && command->parallel && !help;
-  /* What needs no MPI is done once. The others end well: mpirun would kill the
+  /* Do once what needs no MPI. The others end well: mpirun would kill the
    * first, before it has spoken, at the sight of a status. */
   if (base_take_rank() != 0 && !parallel) return EXIT_DONE;
   if (argc < 2) {

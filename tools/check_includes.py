@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Verifies the rules of layering that C cannot express.
 
-1. Folders of src/ include only what SEES allows (design.md, section 1).
+1. Folders of src/ include only what SEES allows.
 2. A foreign library is included by one folder, or by files named here.
 3. A .c file includes its own header first.
 4. `#if DIM` stands only in tree/ and geometry/ and in their headers.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads what a run of talus leaves in its directory (design.md, section 7)."""
+"""Reads what a run of talus leaves in its directory."""
 import csv
 import math
 import pathlib

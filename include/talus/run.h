@@ -2,9 +2,8 @@
 /* Run: a case from its first to its last step, with all files it leaves.
  *
  * The output directory holds series.csv, profile.csv, snapshots.xdmf with
- * snapshot-*.h5, checkpoint.h5, parameters.csv and run.log (design.md,
- * section 7); the headers series.h, profile.h, snapshot.h, checkpoint.h say
- * what is in each.
+ * snapshot-*.h5, checkpoint.h5, parameters.csv and run.log; the headers
+ * series.h, profile.h, snapshot.h, checkpoint.h say what is in each.
  */
 #ifndef TALUS_RUN_H
 #define TALUS_RUN_H

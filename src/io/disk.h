@@ -15,7 +15,7 @@ _Noreturn void disk_fail(const char *path, int error);
 int disk_sync_error(int error);
 
 /* Brings the directory of a file to the disk, so that the names in it last.
- * What a file system cannot do is passed over. */
+ * File systems that cannot do it are passed over. */
 void disk_sync_directory(const char *file);
 
 #endif

@@ -50,7 +50,7 @@ static inline FILE *reference_open(const char *path) {
   return file;
 }
 
-/* Of a file with a header `time,x,height` and a row per point. */
+/* Read from a file with a header `time,x,height` and a row per point. */
 static inline void reference_read_rows(const char *path, double time,
                                        struct curve *curve) {
   FILE *file = reference_open(path);
@@ -65,7 +65,7 @@ static inline void reference_read_rows(const char *path, double time,
   CHECK(curve->n > 2, "%s has no outline at %g", path, time);
 }
 
-/* Of a file with a header `x,t=0.66,...` and a row per x. */
+/* Read from a file with a header `x,t=0.66,...` and a row per x. */
 static inline void reference_read_columns(const char *path, double time,
                                           struct curve *curve) {
   FILE *file = reference_open(path);

@@ -123,7 +123,7 @@ static void run_flowing(struct report *report) {
   }
 }
 
-/* What the formulas above say on levels no run reaches. */
+/* Report the formulas above on levels no run reaches. */
 static void report_theory(struct report *report) {
   static const char grid[] = "midpoint rule";
   enum { FINEST = 14 };

@@ -221,7 +221,7 @@ static double tip_speed(const struct diagnostics *d) {
   return 2. / 3 * I / kGrain * pow(h, 1.5) / pow(1 + slope * slope, 0.25);
 }
 
-/* What the deposit does between t = 8 and 12, speeds in sqrt(g L0). */
+/* Motion of the deposit between t = 8 and 12, speeds in sqrt(g L0). */
 struct creep {
   bool good;
   double mean, outline, front; /* root of the mean square; of its outline */

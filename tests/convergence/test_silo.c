@@ -187,8 +187,8 @@ static void report_law(struct report *report,
   report_at_most(report, name, "drift of Q", 7, drift, 0.05);
 }
 
-/* What the law of the start, through the steady part of a run, says of it;
- * returns tau. */
+/* Apply the law of the start, through the steady part of a run, to the rest of
+ * it; returns tau. */
 static double start_law(const struct discharge *run, struct discharge *law) {
   const struct line line = line_between(run, kSteady.begin, kSteady.end);
   const double late = (line.at_0 - run->volume[0]) / line.slope;
