@@ -32,15 +32,14 @@ CPPFLAGS     = -D_POSIX_C_SOURCE=200809L -DTALUS_VERSION='"$(VERSION)"' \
 COMPILE      = $(CC) -std=c11 $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS)
 LDLIBS       = $(P4EST_LIBS) $(PKG_LIBS) -lz -lm
 
-LAUNCHER = $(wildcard src/launcher.c)
-MAIN     = $(wildcard src/main.c)
-SOURCES  = $(sort $(filter-out src/launcher.c src/main.c,$(wildcard src/*.c \
-                  src/*/*.c)))
+LAUNCHER = src/command/launcher.c
+MAIN     = src/command/main.c
+SOURCES  = $(sort $(filter-out $(LAUNCHER) $(MAIN),$(wildcard src/*.c \
+                  src/*/*.c tree/*.c)))
 LEVELS   = unit mesh convergence bench
-C_FILES  = $(sort $(wildcard include/talus/*.h src/*.[ch] src/*/*.[ch] \
-                  tests/*/*.[ch]))
-PROGRAMS = $(if $(MAIN),$(BUILD)/talus2d $(BUILD)/talus3d) \
-           $(LAUNCHER:src/launcher.c=$(BUILD)/talus)
+C_FILES  = $(sort $(wildcard include/talus/*.h include/talus/*/*.h src/*.[ch] \
+                  src/*/*.[ch] tree/*.[ch] tests/*/*.[ch]))
+PROGRAMS = $(BUILD)/talus2d $(BUILD)/talus3d $(BUILD)/talus
 TESTS    = $(foreach d,2d 3d,$(BUILD)/$d/unit $(BUILD)/$d/mesh)
 PROOFS   = $(foreach d,2d 3d,$(BUILD)/$d/convergence $(BUILD)/$d/bench)
 
@@ -84,7 +83,7 @@ $(BUILD)/$(1)d/%.o: %.c $(BUILD)/flags
 $(BUILD)/$(1)d/libtalus.a: $(SOURCES:%.c=$(BUILD)/$(1)d/%.o) $(BUILD)/sources
 	@rm -f $$@
 	$$(call say,$$@)ar qcs $$@ $$(filter %.o,$$^)
-$(BUILD)/talus$(1)d: $(BUILD)/$(1)d/src/main.o $(BUILD)/$(1)d/libtalus.a
+$(BUILD)/talus$(1)d: $(BUILD)/$(1)d/$(MAIN:.c=.o) $(BUILD)/$(1)d/libtalus.a
 endef
 define test_rules # 1: the dimension, 2: the level
 $(BUILD)/$(1)d/$(2): $(patsubst %.c,$(BUILD)/$(1)d/%.o,$(sort $(wildcard \
@@ -93,7 +92,7 @@ $(BUILD)/$(1)d/tests/$(2)/main.o: $(BUILD)/$(2)_suites.inc
 endef
 $(foreach d,2 3,$(eval $(call rules,$d)) \
   $(foreach l,$(LEVELS),$(eval $(call test_rules,$d,$l))))
-$(BUILD)/talus: $(BUILD)/2d/src/launcher.o $(BUILD)/2d/libtalus.a
+$(BUILD)/talus: $(BUILD)/2d/$(LAUNCHER:.c=.o) $(BUILD)/2d/libtalus.a
 $(TESTS): LDLIBS += $(CHECK_LIBS)
 $(PROGRAMS) $(TESTS) $(PROOFS):
 	$(call say,$@)$(CC) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
@@ -128,7 +127,7 @@ format: ## clang-format 14 over all C files
 format-check check-includes: ## style; layering and forbidden calls
 	@tests/run.sh $(BUILD) $(if $(filter f%,$@),format,includes)
 tidy: ## clang-tidy, in both dimensions
-	@failed=0; for d in 2 3; do printf '%s\n' $(filter src/%.c,$(C_FILES)) | \
+	@failed=0; for d in 2 3; do printf '%s\n' $(filter src/%.c tree/%.c,$(C_FILES)) | \
 	  xargs -P $(JOBS) -I{} clang-tidy --quiet {} -- -std=c11 -DDIM=$$d \
 	    $(CPPFLAGS) $$($(CC) --showme:compile) || failed=1; done; exit $$failed
 compdb: ## compile_commands.json
@@ -148,7 +147,7 @@ coverage: ## lines of each source that unit and mesh tests reach
 	$(AGAIN) MODE=coverage BUILD=$(BUILD)/coverage all tests
 	@tests/run.sh $(BUILD)/coverage unit mesh
 	@gcov -n $$(find $(BUILD)/coverage -name '*.gcda') 2>/dev/null | \
-	  awk -F"'" '/^File/ {f = $$2} /^Lines/ && f ~ /^src/ {print $$0, f}'
+	  awk -F"'" '/^File/ {f = $$2} /^Lines/ && f ~ /^(src|tree)/ {print $$0, f}'
 clean: ## remove everything that was built
 	rm -rf $(BUILD) compile_commands.json
 help: ## this list

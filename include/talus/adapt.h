@@ -13,17 +13,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-struct simulation;
+struct two_phase;
 
 /* Cells by which a band is widened before a leaf may be merged. */
 enum { ADAPT_HYSTERESIS = 2 };
 
 /* Has the surface moved far enough, or have enough steps passed? */
-bool adapt_is_due(const struct simulation *sim);
+bool adapt_is_due(const struct two_phase *sim);
 /* One round of dividing and merging; fields, mesh and solvers follow.
  * Returns true if the grid changed. Collective. */
-bool adapt_grid(struct simulation *sim);
+bool adapt_grid(struct two_phase *sim);
 /* Flags of forest_adapt into flag [nleaves]; c filled. Collective. */
-void adapt_flags(struct simulation *sim, int8_t *flag);
+void adapt_flags(struct two_phase *sim, int8_t *flag);
 
 #endif

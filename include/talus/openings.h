@@ -29,7 +29,7 @@
 #include "talus/forest.h"
 
 struct params;
-struct simulation;
+struct two_phase;
 
 enum { OPENINGS_DISTANCE = 4 };
 
@@ -40,18 +40,18 @@ int openings_patch(void *context, int side, const double x[3], double h,
 /* Find the patch of a boundary of the case that lies across an axis. */
 int openings_patch_number(int boundary, int axis);
 /* Find the level that openings ask of leaf i, at most one above its own. */
-int openings_level(const struct simulation *sim, int32_t f);
+int openings_level(const struct two_phase *sim, int32_t f);
 /* Give that level for a cell of this level with centre x. Pure. */
 int openings_level_at(const struct params *params, const double x[DIM],
                       int level);
 /* Are all faces as fine as openings_level asks? Collective. */
-bool openings_are_fine(const struct simulation *sim);
+bool openings_are_fine(const struct two_phase *sim);
 /* Adapt the grid of a restart, whose conditions may be new, until openings are
  * as fine as they are to be. Fields are carried over. Collective. */
-void openings_refine(struct simulation *sim);
+void openings_refine(struct two_phase *sim);
 /* End the program by a USER_ERROR if a patch that the case's functions return
  * has no face on this grid, as when max_cells stops it from being refined.
  * Collective. */
-void openings_check(const struct simulation *sim);
+void openings_check(const struct two_phase *sim);
 
 #endif

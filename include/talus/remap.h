@@ -4,12 +4,12 @@
 #define TALUS_REMAP_H
 
 struct forest_map;
-struct simulation;
+struct two_phase;
 
 /* sim->mesh and the fields are of the old grid, sim->forest already of the
  * new one as `map` says. Moves leaves and data between ranks, makes the new
  * mesh and leaves every field with remap != REMAP_NONE valid on leaves (face
  * fields on all faces). Collective. */
-void remap_fields(struct simulation *sim, const struct forest_map *map);
+void remap_fields(struct two_phase *sim, const struct forest_map *map);
 
 #endif

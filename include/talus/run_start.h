@@ -7,15 +7,15 @@ struct params;
 struct progress;
 struct run_size;
 struct run_state;
-struct simulation;
+struct two_phase;
 
 /* Make the initial state, or read what `checkpoint` holds if that is not NULL,
  * and tell `progress` meanwhile. A state that exceeds the memory of the job is
  * a USER_ERROR, before it is made where the estimate says so. *before is set by
  * a checkpoint, *size by the estimate, or by what the checkpoint holds.
  * Collective; the caller owns the simulation. */
-struct simulation *run_start(const struct params *params,
-                             const char *checkpoint, struct progress *progress,
-                             struct run_state *before, struct run_size *size);
+struct two_phase *run_start(const struct params *params, const char *checkpoint,
+                            struct progress *progress, struct run_state *before,
+                            struct run_size *size);
 
 #endif

@@ -9,7 +9,7 @@
 #include "talus/csv.h"
 
 struct params;
-struct simulation;
+struct two_phase;
 
 struct run_state {
   double wall_seconds; /* since the first step, over all invocations */
@@ -18,11 +18,11 @@ struct run_state {
 };
 
 /* Write the checkpoint (checkpoint.h). Collective. */
-void run_state_write(const char *path, struct simulation *sim,
+void run_state_write(const char *path, struct two_phase *sim,
                      struct run_state *state, const char *parameters);
 /* The simulation it holds, with all fields filled; *state is set. Collective;
  * a file that does not fit the case is a USER_ERROR. */
-struct simulation *run_state_read(const char *path, const struct params *params,
-                                  struct run_state *state);
+struct two_phase *run_state_read(const char *path, const struct params *params,
+                                 struct run_state *state);
 
 #endif

@@ -12,9 +12,9 @@
 
 #include <stdbool.h>
 
-#include "../tree/plan.h"
 #include "talus/hierarchy.h"
 #include "talus/krylov.h"
+#include "talus/plan.h"
 
 enum {
   HALF = NCHILD / 2,

@@ -3,9 +3,9 @@
 #ifndef TALUS_SOLVER_LINKING_H
 #define TALUS_SOLVER_LINKING_H
 
-#include "../tree/curve.h"
-#include "../tree/table.h"
 #include "levels.h"
+#include "talus/morton.h"
+#include "talus/table.h"
 
 enum { SLOT_UNKNOWN = -2 }; /* a node that may be on another rank */
 

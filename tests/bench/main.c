@@ -134,7 +134,7 @@ static struct result time_adaptation(int level, int calls) {
   struct body body = {{0.4, 0.5, 0.5}, 0.25};
   params.shape = (struct function){ball, &body};
   params_follow_surface(&params, level - 3, 3);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   struct result result = {.leaves = forest_nleaves_global(sim->forest)};
   for (int k = 0; k < calls; k++) {
     body.centre[0] += 0.5 / (1 << level);
@@ -143,7 +143,7 @@ static struct result time_adaptation(int level, int calls) {
     adapt_grid(sim);
     result.seconds += (MPI_Wtime() - begin) / calls;
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return result;
 }
 

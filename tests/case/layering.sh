@@ -5,7 +5,8 @@
 set -euo pipefail
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree"/src/{base,geometry,tree,flow,io} "$tree"/include/talus
+mkdir -p "$tree"/tree "$tree"/src/{base,geometry,flow,io,two_phase,command} \
+  "$tree"/include/talus/two_phase
 spdx='/* SPDX-License-Identifier: GPL-3.0-or-later */'
 
 # file NAME LINE...: a file of these lines under the licence
@@ -15,29 +16,35 @@ file() {
   printf '%s\n' "$spdx" "$@" > "$tree/$name"
 }
 
-for header in error plane mesh step; do file "include/talus/$header.h"; done
+for header in error plane mesh advection two_phase/step; do
+  file "include/talus/$header.h"
+done
 file src/base/error.c '#include "talus/error.h"' 'int f(void) { exit(1); }'
 file src/geometry/plane.c '#include "talus/plane.h"' '#include "talus/mesh.h"' \
   '#include <mpi.h>'
-file src/tree/mesh.c '#include "talus/mesh.h"' '#include <p4est.h>' \
+file tree/mesh.c '#include "talus/mesh.h"' '#include <p4est.h>' \
   '#if DIM == 2' '#endif'
-file src/flow/step.c '#include <math.h>' '#include "talus/step.h"' \
+file src/flow/advection.c '#include "talus/advection.h"' \
+  '#include "talus/two_phase/step.h"'
+file src/two_phase/step.c '#include <math.h>' '#include "talus/two_phase/step.h"' \
   '#include <hdf5.h>' '#if DIM == 3' '#endif' \
   '/* malloc(1) */ char *s = "free(s)"; int xfree(void);' \
   'int g(void) { free(s); }'
-file src/io/series.c '#include "talus/step.h"' '#include "talus/error.h"'
+file src/io/series.c '#include "talus/advection.h"' '#include "talus/error.h"'
 file include/talus/orphan.h
-echo 'int x;' > "$tree/src/main.c"
+file src/models.c '#include "talus/two_phase/step.h"'
+echo 'int x;' > "$tree/src/command/main.c"
 
 expected='include/talus/orphan.h:1: belongs to no folder
-src/flow/step.c:2: include "talus/step.h" first
-src/flow/step.c:4: <hdf5.h> may be included by io only
-src/flow/step.c:5: #if DIM is for geometry and tree only
-src/flow/step.c:8: free() is for base only
+src/command/main.c:1: first line must be
+src/flow/advection.c:3: flow may not see talus/two_phase/step.h
 src/geometry/plane.c:3: geometry may not see talus/mesh.h
 src/geometry/plane.c:4: geometry may not see MPI
-src/io/series.c:2: io may not see talus/step.h
-src/main.c:1: first line must be'
+src/io/series.c:2: io may not see talus/advection.h
+src/two_phase/step.c:2: include "talus/two_phase/step.h" first
+src/two_phase/step.c:4: <hdf5.h> may be included by io only
+src/two_phase/step.c:5: #if DIM is for geometry and tree only
+src/two_phase/step.c:8: free() is for base only'
 
 found=$(python3 tools/check_includes.py "$tree" | sort) && exit 1
 while IFS= read -r line <&3 && IFS= read -r want <&4; do

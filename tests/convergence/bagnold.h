@@ -30,7 +30,7 @@ static inline double bagnold_exact(double slope, double y) {
 }
 
 /* Error of u in every leaf, in sim->frozen, which is scratch. */
-static inline struct norms bagnold_norms(const struct simulation *sim,
+static inline struct norms bagnold_norms(const struct two_phase *sim,
                                          double slope) {
   double *error = sim->frozen->v;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -49,7 +49,7 @@ static inline int32_t bagnold_top(const struct mesh *mesh) {
 }
 
 /* Relative error of u there. */
-static inline double bagnold_top_error(const struct simulation *sim,
+static inline double bagnold_top_error(const struct two_phase *sim,
                                        double slope) {
   const int32_t i = bagnold_top(sim->mesh);
   const double exact = bagnold_exact(slope, sim->mesh->x[i][1]);

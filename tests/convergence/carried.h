@@ -23,7 +23,7 @@ struct carried_flow {
 
 struct carried {
   const struct carried_flow *flow;
-  struct simulation *sim;
+  struct two_phase *sim;
   double *steady; /* [nfaces_all] velocity without the factor */
   double volume;  /* at the start */
   double drift;   /* largest |volume / start - 1| */
@@ -77,7 +77,7 @@ static inline double carried_dt(const struct carried *c) {
 }
 
 static inline void carried_adapt(struct carried *c, double dt) {
-  struct simulation *sim = c->sim;
+  struct two_phase *sim = c->sim;
   double travel = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     for (int f = 0; f < NFACE && vof_is_cut(sim->c->v[i]); f++) {
@@ -90,7 +90,7 @@ static inline void carried_adapt(struct carried *c, double dt) {
 }
 
 static inline void carried_step(struct carried *c) {
-  struct simulation *sim = c->sim;
+  struct two_phase *sim = c->sim;
   const struct bench bench = {.mesh = sim->mesh};
   struct transport t = {.c = sim->c,
                         .u_f = sim->u_f,
@@ -112,7 +112,7 @@ static inline void carried_step(struct carried *c) {
 
 /* Integral of |c - exact| over the box. */
 static inline double carried_error(struct carried *c) {
-  struct simulation *sim = c->sim;
+  struct two_phase *sim = c->sim;
   double *error = sim->cell[0]->v;
   carried_shape(c, error);
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -132,14 +132,14 @@ static inline double carried_run(const struct carried_flow *flow, int level,
   params.shape = (struct function){flow->shape, flow->context};
   for (int d = 0; d < DIM; d++) params.origin[d] = flow->origin;
   if (adapted) params_follow_surface(&params, 3, 3);
-  struct carried c = {.flow = flow, .sim = simulation_new(&params)};
+  struct carried c = {.flow = flow, .sim = two_phase_new(&params)};
   carried_set_faces(&c);
   carried_shape(&c, c.sim->c->v);
   c.volume = integral(c.sim->mesh, c.sim->c->v);
   while (c.sim->time < flow->end * (1 - 1e-12)) carried_step(&c);
   const double error = carried_error(&c);
   *drift = c.drift;
-  simulation_destroy(c.sim);
+  two_phase_destroy(c.sim);
   mem_free(c.steady);
   return c.excess <= 1e-12 ? error : NAN;
 }

@@ -6,8 +6,8 @@
 #include <math.h>
 
 #include "runs.h"
-#include "talus/diagnostics.h"
-#include "talus/fractions.h"
+#include "talus/two_phase/fractions.h"
+#include "talus/two_phase/measure.h"
 
 /* Carry an example to a time and measure. */
 static inline bool measure_at(struct example *example, double time,

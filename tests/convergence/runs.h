@@ -14,7 +14,7 @@
 /* An example of the manual under way. */
 struct example {
   struct case_file *file;
-  struct simulation *sim;
+  struct two_phase *sim;
 };
 
 /* Start examples/NAME.lua with overrides: printf of "name=value ..." divided
@@ -37,17 +37,17 @@ static inline struct example example_new(const char *name, const char *format,
   CHECK(text, "cannot read %s: start this from the root of the checkout", path);
   struct example example = {.file = case_load_text(path, text, n, override)};
   mem_free(text);
-  example.sim = simulation_new(case_params(example.file));
+  example.sim = two_phase_new(case_params(example.file));
   return example;
 }
 
 static inline void example_destroy(struct example *example) {
-  simulation_destroy(example->sim);
+  two_phase_destroy(example->sim);
   case_destroy(example->file);
 }
 
 /* Step to `time`; false if a step fails. */
-static inline bool run_to(struct simulation *sim, double time) {
+static inline bool run_to(struct two_phase *sim, double time) {
   bool good = true;
   while (good && sim->time < time * (1 - 1e-12)) {
     good = step_advance(sim, time - sim->time) == EXIT_DONE;
@@ -57,7 +57,7 @@ static inline bool run_to(struct simulation *sim, double time) {
 
 /* Largest change of a velocity component over the last step, per time. The
  * mesh must be the one before it. */
-static inline double run_rate(const struct simulation *sim) {
+static inline double run_rate(const struct two_phase *sim) {
   double most = 0;
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -68,8 +68,7 @@ static inline double run_rate(const struct simulation *sim) {
 }
 
 /* Step until max |du/dt| < rate; false if that is not so at `time`. */
-static inline bool run_steady(struct simulation *sim, double rate,
-                              double time) {
+static inline bool run_steady(struct two_phase *sim, double rate, double time) {
   while (sim->time < time) {
     if (step_advance(sim, time - sim->time) != EXIT_DONE) return false;
     if (run_rate(sim) < rate) return true;

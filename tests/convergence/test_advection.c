@@ -54,7 +54,7 @@ static double vortex_error(int level, bool adapted, enum limiter limiter) {
                            .level = level,
                            .function = {in_ball, &params.level_max}};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const bool good = run_to(sim, end);
   double *error = sim->frozen->v;
   at[0].time = sim->time;
@@ -63,7 +63,7 @@ static double vortex_error(int level, bool adapted, enum limiter limiter) {
     error[i] = sim->u[0]->v[i] - carried_vortices(&at[0], x);
   }
   const double l2 = norms_of(sim->mesh, error).l2;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return good ? l2 : NAN;
 }
 
@@ -102,7 +102,7 @@ static double strip_excess(enum limiter limiter) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){strip, &kAxis[d]};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   bool good = true;
   while (good && sim->time < 1) {
     good = step_advance(sim, 1 - sim->time) == EXIT_DONE;
@@ -111,7 +111,7 @@ static double strip_excess(enum limiter limiter) {
       most = larger(most, larger(-v, v - 1));
     }
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return good ? most : NAN;
 }
 

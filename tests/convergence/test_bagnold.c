@@ -20,7 +20,7 @@ static struct steady measure(const char *parameters, int trees, int level,
   struct steady out = {NAN, NAN, NAN, NAN, NAN};
   struct example example =
       example_new("bagnold", parameters, trees, level, start);
-  struct simulation *sim = example.sim;
+  struct two_phase *sim = example.sim;
   if (run_steady(sim, kBagnoldSteady, 1000)) out.time = sim->time;
   if (run_steady(sim, kBagnoldSettled, 1000)) {
     const struct norms norms = bagnold_norms(sim, kSlope);

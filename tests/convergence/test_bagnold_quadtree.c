@@ -27,7 +27,7 @@ static const double kFlowing = 0.43, kHeld = 0.35, kEtaMax = 1e4;
 
 /* Largest relative error of the viscosity on faces along the flow:
  * tan(slope) p over the exact shear rate. */
-static double viscosity_error(const struct simulation *sim) {
+static double viscosity_error(const struct two_phase *sim) {
   const struct mesh *mesh = sim->mesh;
   double most = 0;
   for (int32_t f = mesh->face_begin[1]; f < mesh->face_begin[2]; f++) {
@@ -43,7 +43,7 @@ static double viscosity_error(const struct simulation *sim) {
 }
 
 /* Error of u relative to the exact one of the surface. */
-static double creep_error(const struct simulation *sim) {
+static double creep_error(const struct two_phase *sim) {
   double *error = sim->frozen->v;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     const double y = sim->mesh->x[i][1];
@@ -54,7 +54,7 @@ static double creep_error(const struct simulation *sim) {
 }
 
 /* Root of the integral of s e^2 over the errors e that bagnold_norms left. */
-static double deep_norm(const struct simulation *sim) {
+static double deep_norm(const struct two_phase *sim) {
   const struct mesh *mesh = sim->mesh;
   double *e = sim->frozen->v;
   for (int32_t i = 0; i < mesh->nleaves; i++) {

@@ -20,7 +20,7 @@ static double top_error(double slope, double eta_max) {
   struct example example =
       example_new("bagnold", "trees=%d level=1 slope=%g start=0.98 eta_max=%g",
                   1 << (LEVEL - 1), slope, eta_max);
-  struct simulation *sim = example.sim;
+  struct two_phase *sim = example.sim;
   const bool good = run_steady(sim, kBagnoldSteady * exact, 5000);
   const double u = sim->u[0]->v[bagnold_top(sim->mesh)];
   example_destroy(&example);

@@ -100,7 +100,7 @@ static struct result measure(const struct layers *layers, int level) {
   struct example example =
       example_new("bagnold_two_layers", "trees=%d level=1 ratio=%g start=%d",
                   1 << (level - 1), layers->ratio, layers->ratio < 0.05);
-  struct simulation *sim = example.sim;
+  struct two_phase *sim = example.sim;
   const struct mesh *mesh = sim->mesh;
   struct result result = {NAN, NAN};
   double *error = sim->frozen->v, most = 0;

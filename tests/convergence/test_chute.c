@@ -29,7 +29,7 @@ static double exact(double x) {
 
 /* Where the line through I/(I + I0) vanishes. Faces below 0.05 of it are in
  * or next to the plug, where eta_max acts. */
-static double plug_width(const struct simulation *sim) {
+static double plug_width(const struct two_phase *sim) {
   const struct mesh *mesh = sim->mesh;
   double x[MOST_FACES], part[MOST_FACES], c0, c1, cov00, cov01, cov11, rest;
   size_t n = 0;
@@ -48,7 +48,7 @@ static double plug_width(const struct simulation *sim) {
 }
 
 /* Speed of the leaf next to the axis. */
-static double plug_speed(const struct simulation *sim) {
+static double plug_speed(const struct two_phase *sim) {
   int32_t axis = 0;
   for (int32_t i = 1; i < sim->mesh->nleaves; i++) {
     if (sim->mesh->x[i][0] < sim->mesh->x[axis][0]) axis = i;
@@ -65,7 +65,7 @@ static struct steady measure(int level) {
   struct steady out = {NAN, NAN, NAN, NAN};
   struct example example =
       example_new("chute", "trees=%d level=1", 1 << (level - 1));
-  struct simulation *sim = example.sim;
+  struct two_phase *sim = example.sim;
   double *error = sim->frozen->v;
   if (run_steady(sim, 1e-6, 2000)) {
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {

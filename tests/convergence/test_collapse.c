@@ -15,8 +15,8 @@
  * with the same cells on two levels less: the front comes to 4.7 L0. */
 #include "report.h"
 #include "runs.h"
-#include "talus/diagnostics.h"
-#include "talus/fractions.h"
+#include "talus/two_phase/fractions.h"
+#include "talus/two_phase/measure.h"
 
 enum { FIRST = 8, LAST = 11, LEVELS = LAST - FIRST + 1, MOST_STEPS = 8192 };
 static const double kAspect = 1.42;
@@ -32,7 +32,7 @@ struct heap {
 };
 
 /* One step of at most dt_max, written down. */
-static void advance_heap(struct simulation *sim, double dt_max,
+static void advance_heap(struct two_phase *sim, double dt_max,
                          struct heap *heap) {
   heap->good = step_advance(sim, dt_max) == EXIT_DONE;
   CHECK(heap->nsteps < MOST_STEPS, "more than %d steps", MOST_STEPS);
@@ -51,7 +51,7 @@ static void run_collapse(int level, double box, const char *more,
   struct example example =
       example_new("column", "a=%g d=0.0219 size=%g level=%d %s", kAspect, box,
                   level - (int)lround(log2(32 / box)), more);
-  struct simulation *sim = example.sim;
+  struct two_phase *sim = example.sim;
   memset(heap, 0, sizeof *heap);
   heap->good = true;
   for (int k = 0; heap->good && sim->time < stop - 1e-9; k++) {

@@ -26,7 +26,7 @@
  * interface crosses a jump of level. */
 #include "report.h"
 #include "systems.h"
-#include "talus/properties.h"
+#include "talus/two_phase/properties.h"
 #include "talus/viscous.h"
 #include "talus/vof.h"
 
@@ -60,7 +60,7 @@ static struct params layers(double *interface, double density_soft) {
 static void couette_errors(double part, double density_soft, double error[2]) {
   double interface = (7 + part) / (1 << LEVEL);
   const struct params params = layers(&interface, density_soft);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const bool good = run_steady(sim, 1e-11, params.stop);
   error[0] = error[1] = good ? 0 : NAN;
   for (int32_t i = 0; i < sim->mesh->nleaves && good; i++) {
@@ -69,7 +69,7 @@ static void couette_errors(double part, double density_soft, double error[2]) {
     const double off = fabs(sim->u[0]->v[i] - couette(interface, y));
     error[cut] = larger(error[cut], larger(off, fabs(sim->u[1]->v[i])));
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
 }
 
 static void report_couette(struct report *report, const char *densities,

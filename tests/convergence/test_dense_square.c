@@ -50,7 +50,7 @@ struct track {
 };
 
 /* Centre of volume, found from the last one, as the box is periodic. */
-static void follow(const struct simulation *sim, struct track *track) {
+static void follow(const struct two_phase *sim, struct track *track) {
   double shift[2] = {0}, volume = integral(sim->mesh, sim->c->v);
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     for (int d = 0; d < 2; d++) {
@@ -64,7 +64,7 @@ static void follow(const struct simulation *sim, struct track *track) {
 }
 
 /* Mean velocity of the grains along x. */
-static double mean_speed(const struct simulation *sim) {
+static double mean_speed(const struct two_phase *sim) {
   double sum = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     sum += sim->c->v[i] * mesh_volume(sim->mesh, i) * sim->u[0]->v[i];
@@ -83,7 +83,7 @@ static double wrapped_square(void *context, const double x[3]) {
 }
 
 /* Part of the square's area that is not where it should be. */
-static double shape_error(struct simulation *sim, const struct track *to) {
+static double shape_error(struct two_phase *sim, const struct track *to) {
   struct body body = start;
   double *error = sim->cell[0]->v;
   for (int d = 0; d < 2; d++) body.centre[d] = to->centre[d];
@@ -97,7 +97,7 @@ static double shape_error(struct simulation *sim, const struct track *to) {
 static void run_ratio(struct report *report, const char *grid, double ratio,
                       double eta_gas) {
   const struct params params = dense_square(ratio, eta_gas);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   struct track from, now = {0, {start.centre[0], start.centre[1]}};
   bool good = true;
   double speed = NAN, fastest = 0;
@@ -119,7 +119,7 @@ static void run_ratio(struct report *report, const char *grid, double ratio,
                  0.005 + 3.5 / ratio * kTravel * kTravel);
   report_value(report, grid, "largest |u|", 7, fastest);
   report_value(report, grid, "steps", 7, (double)sim->step);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
 }
 
 static void run(struct report *report) {

@@ -15,9 +15,9 @@
  * than c, measured half a step ahead of its own time, lets it waver: 0.3 %. */
 #include "report.h"
 #include "runs.h"
-#include "talus/diagnostics.h"
-#include "talus/fractions.h"
 #include "talus/outline.h"
+#include "talus/two_phase/fractions.h"
+#include "talus/two_phase/measure.h"
 
 static const double kStop = 8, kMixed = 0.01;
 
@@ -27,7 +27,7 @@ struct drop {
 };
 
 /* Distance of the last mixed leaf of the floor behind the front, in leaves. */
-static double mixed_behind_front(const struct simulation *sim) {
+static double mixed_behind_front(const struct two_phase *sim) {
   const struct mesh *mesh = sim->mesh;
   double front = 0, first = HUGE_VAL, h = HUGE_VAL;
   for (int pass = 0; pass < 2; pass++) {
@@ -42,7 +42,7 @@ static double mixed_behind_front(const struct simulation *sim) {
   return first < HUGE_VAL ? (front - first) / h : 0;
 }
 
-static double energy_of(struct simulation *sim, struct diagnostics *d) {
+static double energy_of(struct two_phase *sim, struct diagnostics *d) {
   fractions_synchronise(sim);
   diagnostics_measure(sim, d);
   fractions_desynchronise(sim);
@@ -52,7 +52,7 @@ static double energy_of(struct simulation *sim, struct diagnostics *d) {
 static struct drop run_drop(int level, double gap, double fall) {
   struct example example =
       example_new("drop", "level=%d gap=%g fall=%g", level, gap, fall);
-  struct simulation *sim = example.sim;
+  struct two_phase *sim = example.sim;
   struct diagnostics d;
   struct drop drop = {.good = true, .gain = -HUGE_VAL};
   const double landed = sqrt(2 * gap) + 0.1 * sqrt(0.8);

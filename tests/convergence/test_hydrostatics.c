@@ -41,7 +41,7 @@ static void rest(int level, bool adapted, struct bed *bed, double most[2]) {
                            .level = level,
                            .function = {strip, &params.level_max}};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   bool good = true;
   most[0] = most[1] = 0;
   for (int k = 0; k < STEPS && good; k++) {
@@ -49,7 +49,7 @@ static void rest(int level, bool adapted, struct bed *bed, double most[2]) {
     double *half = &most[2 * k / STEPS];
     *half = larger(*half, largest(sim, sim->u) / sqrt(kDepth));
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   if (!good) most[0] = most[1] = NAN;
 }
 

@@ -35,7 +35,7 @@ static double jet_error(double width, int level) {
   snprintf(words[0], sizeof words[0], "W=%.17g", width);
   snprintf(words[1], sizeof words[1], "level=%d", level);
   struct case_file *file = case_load_text("jet.lua", kJet, 2, override);
-  struct simulation *sim = simulation_new(case_params(file));
+  struct two_phase *sim = two_phase_new(case_params(file));
   double most = 0;
   while (sim->time < 2 * (1 - 1e-12) && isfinite(most)) {
     if (step_advance(sim, 2 - sim->time) != EXIT_DONE) most = NAN;
@@ -43,7 +43,7 @@ static double jet_error(double width, int level) {
     const double volume = integral(sim->mesh, sim->c->v);
     most = fmax(most, fabs(volume / (width * 0.5 * time) - 1));
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   case_destroy(file);
   return most;
 }
@@ -56,7 +56,7 @@ static double silo_rate(const char *width, const char *inside) {
   bool good = true;
   int n = 0;
   struct example example = example_new("silo", "W=%s inside=%s", width, inside);
-  struct simulation *sim = example.sim;
+  struct two_phase *sim = example.sim;
   while (good && sim->time < 4 * (1 - 1e-12)) {
     good = step_advance(sim, 4 - sim->time) == EXIT_DONE;
     if (sim->time < 2 || n == MOST) continue;

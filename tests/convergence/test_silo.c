@@ -58,7 +58,7 @@ struct discharge {
 
 /* Outward flux through the floor with which c is moved in the next step, and
  * what is at the outlet. */
-static double outlet_flux(struct simulation *sim, struct discharge *out) {
+static double outlet_flux(struct two_phase *sim, struct discharge *out) {
   const struct mesh *mesh = sim->mesh;
   double *u_f = sim->u_half->v, sum = 0;
   memcpy(u_f, sim->u_f->v, (size_t)mesh->nfaces_all * sizeof(double));
@@ -75,8 +75,7 @@ static double outlet_flux(struct simulation *sim, struct discharge *out) {
   return sum;
 }
 
-static void record(struct simulation *sim, double parts,
-                   struct discharge *out) {
+static void record(struct two_phase *sim, double parts, struct discharge *out) {
   const int count[2] = {sim->pressure.iterations, sim->viscous.iterations};
   CHECK(out->n < MOST_STEPS, "more than %d steps", MOST_STEPS);
   /* c is half a step behind */
@@ -93,7 +92,7 @@ static void record(struct simulation *sim, double parts,
 static void run_silo(const char *overrides, double parts, double stop,
                      struct discharge *out) {
   struct example example = example_new("silo", "%s", overrides);
-  struct simulation *sim = example.sim;
+  struct two_phase *sim = example.sim;
   memset(out, 0, sizeof *out);
   out->good = true;
   out->least = out->slowest = HUGE_VAL;

@@ -62,7 +62,7 @@ static double space_error(int level, bool adapted) {
                            .level = level,
                            .function = {rectangle, &params.level_max}};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double dt = 0.4 / (1 << level);
   bool good = true;
   while (good && sim->time < kEnd - 1e-12) {
@@ -75,7 +75,7 @@ static double space_error(int level, bool adapted) {
     error[i] = sim->u[0]->v[i] - decay * vortices(&kAxis[0], x);
   }
   const double l2 = norms_of(sim->mesh, error).l2;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return good ? l2 : NAN;
 }
 
@@ -85,7 +85,7 @@ static double *crossed_run(int level, double viscosity, double time,
                            int steps) {
   struct params params = flow(level, viscosity, crossed);
   params.tolerance_pressure = params.tolerance_viscous = 1e-10;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double dt = time / steps;
   bool good = true;
   for (int k = 0; k < steps && good; k++) {
@@ -94,7 +94,7 @@ static double *crossed_run(int level, double viscosity, double time,
   const size_t n = (size_t)1 << (2 * level);
   double *u = good ? MEM_NEW(double, n) : NULL;
   if (good) memcpy(u, sim->u[0]->v, n * sizeof *u);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return u;
 }
 

@@ -6,8 +6,8 @@
 
 #include "bench.h"
 #include "talus/adapt.h"
-#include "talus/simulation.h"
-#include "talus/step.h"
+#include "talus/two_phase/state.h"
+#include "talus/two_phase/step.h"
 
 static inline struct rheology newtonian(double eta) {
   struct rheology r;
@@ -74,7 +74,7 @@ static inline double column(void *context, const double x[3]) {
   return 0.4 - outside;
 }
 
-static inline void sim_fill(struct simulation *sim) {
+static inline void sim_fill(struct two_phase *sim) {
   const struct params *params = sim->params;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     const double *centre = sim->mesh->x[i];
@@ -92,16 +92,16 @@ static inline void sim_fill(struct simulation *sim) {
   }
 }
 
-/* As simulation_new, on a communicator, with face velocities the means of the
+/* As two_phase_new, on a communicator, with face velocities the means of the
  * cells'. The grid follows the criteria. */
-static inline struct simulation *sim_new(const struct params *params,
-                                         MPI_Comm comm) {
+static inline struct two_phase *sim_new(const struct params *params,
+                                        MPI_Comm comm) {
   struct forest_layout layout;
-  simulation_layout(params, &layout);
+  two_phase_layout(params, &layout);
   const int start =
       params->ncriteria > 0 ? params->level_min : params->level_max;
-  struct simulation *sim =
-      simulation_new_on(params, forest_new(comm, &layout, start));
+  struct two_phase *sim =
+      two_phase_new_on(params, forest_new(comm, &layout, start));
   sim_fill(sim);
   for (int k = 0; k < 20 && params->ncriteria > 0; k++) {
     if (!adapt_grid(sim)) break;
@@ -121,7 +121,7 @@ static inline struct simulation *sim_new(const struct params *params,
 }
 
 /* Largest |v| of a vector over the leaves, component by component. */
-static inline double largest(const struct simulation *sim,
+static inline double largest(const struct two_phase *sim,
                              struct field *const v[DIM]) {
   double most = 0;
   for (int d = 0; d < DIM; d++) {
@@ -133,7 +133,7 @@ static inline double largest(const struct simulation *sim,
 }
 
 /* Momentum along d, or (d < 0) the mass. */
-static inline double sim_momentum(const struct simulation *sim, int d) {
+static inline double sim_momentum(const struct two_phase *sim, int d) {
   const double grains = sim->params->grains.density;
   const double gas = sim->params->gas.density;
   long double sum = 0;

@@ -28,7 +28,7 @@ static double distance(const struct mesh *mesh, int32_t i) {
 
 START_TEST(the_surface_lies_in_a_band_of_the_finest_level) {
   const struct params params = drop_params();
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const struct mesh *mesh = sim->mesh;
   const double h = 1.0 / (1 << FINE);
   bool band = true, wide = true;
@@ -44,7 +44,7 @@ START_TEST(the_surface_lies_in_a_band_of_the_finest_level) {
   coarsest = mesh_max(mesh, coarsest);
   band = all_ranks(band), wide = all_ranks(wide);
   const double volume = integral(mesh, sim->c->v), pi = acos(-1);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(band);
   ck_assert(wide);
   ck_assert(coarsest == 1.0 / (1 << COARSE)); /* and no more than that */
@@ -60,7 +60,7 @@ START_TEST(everything_inside_takes_its_level) {
   params.shape.context = &body;
   params.criterion[params.ncriteria++] =
       (struct criterion){.type = CRITERION_INSIDE, .level = FINE - 1};
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   bool good = true;
   double deep = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -75,7 +75,7 @@ START_TEST(everything_inside_takes_its_level) {
   }
   deep = mesh_sum(sim->mesh, deep);
   good = all_ranks(good);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(good);
   ck_assert_double_gt(deep, 0);
 }
@@ -93,7 +93,7 @@ START_TEST(a_function_of_position_sets_the_level) {
       (struct criterion){.type = CRITERION_FUNCTION,
                          .level = FINE,
                          .function = {left_is_fine, NULL}};
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   bool good = true;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     const int level = sim->mesh->level[i];
@@ -101,7 +101,7 @@ START_TEST(a_function_of_position_sets_the_level) {
     if (sim->mesh->x[i][0] > 0.7) good = good && level == COARSE;
   }
   good = all_ranks(good);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(good);
 }
 END_TEST
@@ -119,7 +119,7 @@ START_TEST(the_estimate_finds_a_jump_of_velocity) {
   params.boundary[0].type = params.boundary[1].type = BOUNDARY_SLIP;
   params.criterion[params.ncriteria++] = (struct criterion){
       .type = CRITERION_ESTIMATE, .level = FINE, .threshold = 0.02};
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   bool good = sim->mesh->level_finest == FINE;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     const double away = fabs(sim->mesh->x[i][0] - 0.5);
@@ -127,7 +127,7 @@ START_TEST(the_estimate_finds_a_jump_of_velocity) {
     if (away > 0.3) good = good && sim->mesh->level[i] == COARSE + 1;
   }
   good = all_ranks(good);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(good);
 }
 END_TEST
@@ -149,7 +149,7 @@ START_TEST(a_criterion_is_confined_to_a_phase) {
                          .only = only,
                          .level = FINE,
                          .threshold = 0.02};
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const struct mesh *mesh = sim->mesh;
   double inside = 0, outside = 0, coarse = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -166,7 +166,7 @@ START_TEST(a_criterion_is_confined_to_a_phase) {
   inside = mesh_sum(mesh, inside), coarse = mesh_sum(mesh, coarse);
   outside = mesh_sum(mesh, outside);
   const bool changed = adapt_grid(sim);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_gt(inside, 0);
   ck_assert_double_eq(coarse, 0);
   ck_assert_double_eq(outside, 0);
@@ -197,11 +197,11 @@ START_TEST(the_cap_is_respected) {
   double over = 0;
   int n = 0;
   struct forest_layout layout;
-  simulation_layout(&params, &layout);
+  two_phase_layout(&params, &layout);
   for (int part = -1; part < n; part++) {
     if (part >= 0) params.max_cells = size[part] - 1;
-    struct simulation *sim =
-        simulation_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
+    struct two_phase *sim =
+        two_phase_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
     for (int k = 0; k < MOST; k++) {
       sim_fill(sim);
       if (!adapt_grid(sim)) break;
@@ -209,7 +209,7 @@ START_TEST(the_cap_is_respected) {
       if (part < 0) size[n++] = leaves;
       over = fmax(over, (double)leaves / (double)params.max_cells);
     }
-    simulation_destroy(sim);
+    two_phase_destroy(sim);
   }
   ck_assert_int_gt(n, FINE - COARSE - 1);
   ck_assert_double_le(over, 1.1);
@@ -222,9 +222,9 @@ START_TEST(a_second_adaptation_changes_nothing) {
     params.criterion[params.ncriteria++] =
         (struct criterion){.type = CRITERION_INSIDE, .level = FINE - 1};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const bool changed = adapt_grid(sim);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(!changed);
 }
 END_TEST
@@ -235,7 +235,7 @@ static double drift(int d, const double x[3]) {
 }
 
 /* Move the grains by `leaves` of the finest along a diagonal. */
-static void move(struct simulation *sim, double leaves) {
+static void move(struct two_phase *sim, double leaves) {
   const struct mesh *mesh = sim->mesh;
   double *normal[DIM];
   field_arrays(sim->normal, normal);
@@ -262,7 +262,7 @@ static void move(struct simulation *sim, double leaves) {
  * is no longer near it is merged again. */
 START_TEST(the_band_follows_the_surface) {
   const struct params params = drop_params();
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double volume = integral(sim->mesh, sim->c->v);
   const double before = (double)forest_nleaves_global(sim->forest);
   int rounds = 0;
@@ -282,7 +282,7 @@ START_TEST(the_band_follows_the_surface) {
   band = all_ranks(band);
   const double after = (double)forest_nleaves_global(sim->forest);
   const double drifted = integral(sim->mesh, sim->c->v);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(band);
   ck_assert_int_le(rounds, FINE - COARSE + 1); /* a level at a time */
   /* about as many as before: the wake is merged, but for the hysteresis */
@@ -295,7 +295,7 @@ END_TEST
  * leaves at first, then for nothing more. */
 START_TEST(a_trembling_surface_leaves_the_grid_alone) {
   const struct params params = drop_params();
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   bool changed = false;
   for (int k = 1; k <= 6; k++) {
     struct body body = drop;
@@ -306,7 +306,7 @@ START_TEST(a_trembling_surface_leaves_the_grid_alone) {
       changed = changed || k > 2;
     }
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(!changed);
 }
 END_TEST

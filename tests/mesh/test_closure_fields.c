@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fields for output: shear rate and what the closure knows of the grains. */
-#include "talus/closure_fields.h"
+#include "talus/two_phase/closure_fields.h"
 
 #include <check.h>
 
@@ -21,7 +21,7 @@ static struct rheology lee_huang(void) {
 
 /* Grains in plane shear below gas that shears a hundred times faster, at one
  * pressure. */
-static void set_shear(struct simulation *sim) {
+static void set_shear(struct two_phase *sim) {
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     const double z = sim->mesh->x[i][DIM - 1];
     sim->u[0]->v[i] = RATE * (z + 99 * fmax(z - height, 0));
@@ -30,7 +30,7 @@ static void set_shear(struct simulation *sim) {
 }
 
 /* Leaves next to a side see its condition, not the shear. */
-static bool is_inside(const struct simulation *sim, int32_t i) {
+static bool is_inside(const struct two_phase *sim, int32_t i) {
   bool inside = true;
   for (int d = 0; d < DIM; d++) {
     inside = inside && fabs(sim->mesh->x[i][d] - 0.5) < 0.5 - sim->mesh->h[i];
@@ -43,7 +43,7 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
   params.grains.rheology = lee_huang();
   params.shape = (struct function){below, &height};
   if (_i) params_follow_surface(&params, 2, 1);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const int n = sim->nknown;
   double wrong_rate = 0, wrong[8] = {0}, gas = 0, cells = 0;
   set_shear(sim);
@@ -65,7 +65,7 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
   gas = mesh_sum(sim->mesh, gas);
   wrong_rate = mesh_max(sim->mesh, wrong_rate);
   for (int k = 0; k < n; k++) wrong[k] = mesh_max(sim->mesh, wrong[k]);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   rheology_release(&params.grains.rheology);
   ck_assert_int_eq(n, 4);
   ck_assert_double_gt(cells, 0);
@@ -82,10 +82,10 @@ START_TEST(the_mean_shear_rate_is_that_of_the_grains) {
   params.shape = (struct function){below, &height};
   params.boundary[0].type = params.boundary[1].type = BOUNDARY_PERIODIC;
   params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   set_shear(sim);
   const double mean = closure_fields_shear_rate(sim);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   /* the floor's condition is exact for a linear velocity */
   ck_assert_double_eq_tol(mean, RATE, 1e-10);
 }

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Droplets, outline, energies: against what is known exactly. */
-#include "talus/diagnostics.h"
+#include "talus/two_phase/measure.h"
 
 #include <check.h>
 #include <math.h>
 #include <string.h>
 
 #include "sim.h"
-#include "talus/fractions.h"
 #include "talus/plane.h"
+#include "talus/two_phase/fractions.h"
 
 /* Unit box of uniform leaves, or refined in a ball, and a field on it. */
 struct world {
@@ -245,9 +245,9 @@ END_TEST
 /* Sums */
 
 /* A simulation with no more than diagnostics read; the fields are zero. */
-static struct simulation *state_new(struct world *w, struct params *params) {
+static struct two_phase *state_new(struct world *w, struct params *params) {
   static const char *const name[] = {"u_x", "u_y", "u_z"};
-  struct simulation *sim = MEM_NEW(struct simulation, 1);
+  struct two_phase *sim = MEM_NEW(struct two_phase, 1);
   params->grains.density = 2;
   sim->params = params;
   sim->forest = w->forest;
@@ -260,7 +260,7 @@ static struct simulation *state_new(struct world *w, struct params *params) {
   return sim;
 }
 
-static void state_destroy(struct simulation *sim) {
+static void state_destroy(struct two_phase *sim) {
   fields_destroy(&sim->fields);
   mem_free(sim);
 }
@@ -278,7 +278,7 @@ static void fill_plane(struct world *w, const double n[DIM], double alpha,
 START_TEST(energies_of_a_tilted_half_space_are_exact) {
   struct world w = world_new(4, 5);
   struct params *params = MEM_NEW(struct params, 1);
-  struct simulation *sim = state_new(&w, params);
+  struct two_phase *sim = state_new(&w, params);
   struct diagnostics d;
   /* below y = 0.6 + 0.4 (x - 1/2), or the same in z for 3D */
   double n[DIM] = {0};
@@ -312,7 +312,7 @@ END_TEST
 START_TEST(the_volume_is_good_to_the_last_digits) {
   struct world w = world_new(5, 7);
   struct params *params = MEM_NEW(struct params, 1);
-  struct simulation *sim = state_new(&w, params);
+  struct two_phase *sim = state_new(&w, params);
   struct diagnostics d;
   long double local = 0, sum = 0;
   for (int32_t i = 0; i < w.mesh->nleaves; i++) {
@@ -365,7 +365,7 @@ static struct params layered_params(void) {
  * row of cells. */
 START_TEST(layers_add_up_to_the_heap) {
   const struct params params = layered_params();
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   struct diagnostics d;
   double apart[2] = {0}, gap = 0, volume = 0, moved = 0;
   for (int k = 0; k < 24; k++) step_advance(sim, 1);
@@ -389,7 +389,7 @@ START_TEST(layers_add_up_to_the_heap) {
   const double front = d.front, row = d.outline.spacing / 0.4;
   diagnostics_free(&d);
   mem_free(before);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_gt(front, 0.42); /* it has begun to fall */
   ck_assert_double_le(apart[0], 1e-14);
   ck_assert_double_le(apart[1], 1e-12);

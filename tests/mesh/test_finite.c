@@ -18,7 +18,7 @@ static struct params state_params(void) {
   return p;
 }
 
-static bool is_seen(struct field *field, struct simulation *sim, double value) {
+static bool is_seen(struct field *field, struct two_phase *sim, double value) {
   const bool cells = field->location == FIELD_CELL;
   const int32_t n = cells ? sim->mesh->nleaves : sim->mesh->nfaces;
   const double before = field->v[n / 2];
@@ -32,7 +32,7 @@ static bool is_seen(struct field *field, struct simulation *sim, double value) {
 START_TEST(every_field_of_the_state_is_looked_at) {
   static const double WILD[] = {NAN, INFINITY, -INFINITY};
   struct params p = state_params();
-  struct simulation *sim = simulation_new(&p);
+  struct two_phase *sim = two_phase_new(&p);
   bool good = step_advance(sim, 1) == EXIT_DONE;
   int n = 0;
   for (int k = 0; k < sim->fields.n; k++) {
@@ -40,7 +40,7 @@ START_TEST(every_field_of_the_state_is_looked_at) {
     if (field->remap == REMAP_NONE) continue;
     good = good && is_seen(field, sim, WILD[n++ % 3]);
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(all_ranks(good));
   /* c, tracer, p, eta, u_f and three vectors */
   ck_assert_int_eq(n, 5 + 3 * DIM);
@@ -50,12 +50,12 @@ END_TEST
 /* In a leaf in the midst of grains, where no surface passes. */
 START_TEST(a_nan_in_a_tracer_ends_the_run) {
   struct params p = state_params();
-  struct simulation *sim = simulation_new(&p);
+  struct two_phase *sim = two_phase_new(&p);
   int status = step_advance(sim, 1);
   ck_assert_int_eq(status, EXIT_DONE);
   if (base_rank() == 0) sim->tracer[0]->v[0] = NAN;
   status = step_advance(sim, 1);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_int_eq(status, EXIT_NUMERICAL);
 }
 END_TEST

@@ -14,9 +14,9 @@ enum { FINE = DIM == 2 ? 8 : 5 };
 /* Estimate over the leaves of the grid as it is made. */
 static double ratio(const struct params *params) {
   const double estimate = grid_size_leaves(params);
-  struct simulation *sim = simulation_new(params);
+  struct two_phase *sim = two_phase_new(params);
   const double leaves = (double)forest_nleaves_global(sim->forest);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return estimate / leaves;
 }
 

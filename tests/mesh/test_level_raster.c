@@ -27,7 +27,7 @@ START_TEST(criterion_of_position_misses_nothing) {
       (struct criterion){.type = CRITERION_FUNCTION,
                          .level = FINE,
                          .function = {spot, &depth[_i]}};
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   double found = 0, coarsest = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     double x[3] = {0};
@@ -37,7 +37,7 @@ START_TEST(criterion_of_position_misses_nothing) {
   }
   found = mesh_max(sim->mesh, found), coarsest = mesh_max(sim->mesh, coarsest);
   const bool changed = adapt_grid(sim);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(found > 0);
   ck_assert(!changed);
   ck_assert(coarsest == 1.0 / (1 << COARSE));

@@ -9,9 +9,9 @@
 
 static bool all_are_taken(const struct params *params) {
   struct forest_layout layout;
-  simulation_layout(params, &layout);
-  struct simulation *sim =
-      simulation_new_on(params, forest_new(MPI_COMM_WORLD, &layout, 1));
+  two_phase_layout(params, &layout);
+  struct two_phase *sim =
+      two_phase_new_on(params, forest_new(MPI_COMM_WORLD, &layout, 1));
   bool good = true;
   for (int k = 0; k < sim->fields.n; k++) {
     const char *name = sim->fields.field[k]->name;
@@ -21,7 +21,7 @@ static bool all_are_taken(const struct params *params) {
             name);
     good = false;
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return good;
 }
 

@@ -73,7 +73,7 @@ static double area_of(const struct opening *opening) {
 }
 
 /* Flux through the top into the box, of c as well if it is given. */
-static double inflow_of(struct simulation *sim, bool grains) {
+static double inflow_of(struct two_phase *sim, bool grains) {
   const struct mesh *mesh = sim->mesh;
   double sum = 0;
   field_fill(mesh, sim->c);
@@ -104,12 +104,12 @@ START_TEST(what_flows_in_is_speed_times_area) {
   follow(&params);
   for (int k = 0; k < 2; k++) {
     struct forest_layout layout;
-    simulation_layout(&params, &layout);
-    struct simulation *sim = simulation_new_on(
+    two_phase_layout(&params, &layout);
+    struct two_phase *sim = two_phase_new_on(
         &params, forest_new(MPI_COMM_WORLD, &layout, COARSE + 1));
     for (int n = 0; k == 1 && n < 20 && adapt_grid(sim);) n++;
     flux[k] = inflow_of(sim, true);
-    simulation_destroy(sim);
+    two_phase_destroy(sim);
   }
   side_map_destroy(opening.map);
   for (int k = 0; k < 2; k++) {
@@ -128,14 +128,14 @@ START_TEST(volume_is_that_of_the_jet) {
   params.level_max = params.criterion[0].level = params.opening_level =
       FINE - 2;
   params.tolerance_pressure = params.tolerance_viscous = 1e-4;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   bool good = true;
   for (int k = 0; k < 8; k++) {
     good = good && step_advance(sim, 1) == EXIT_DONE;
   }
   const double volume = integral(sim->mesh, sim->c->v);
   const double time = sim->time - 0.5 * sim->dt;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   side_map_destroy(opening.map);
   ck_assert(good);
   ck_assert_double_gt(volume, 0);
@@ -152,11 +152,11 @@ START_TEST(two_inflows_share_a_face) {
   params.boundary[SECOND].velocity[DIM - 1] = -3 * SPEED;
   params.boundary[SECOND].fraction = 0;
   struct forest_layout layout;
-  simulation_layout(&params, &layout);
-  struct simulation *sim =
-      simulation_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
+  two_phase_layout(&params, &layout);
+  struct two_phase *sim =
+      two_phase_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
   const double all = inflow_of(sim, false), grains = inflow_of(sim, true);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   side_map_destroy(opening.map);
   const double area = area_of(&opening);
   ck_assert_double_eq_tol(grains / (SPEED * area), 1, 2e-4);
@@ -165,7 +165,7 @@ START_TEST(two_inflows_share_a_face) {
 END_TEST
 
 /* An outlet of a few of the finest faces in a wall is there on the grid that
- * simulation_new makes of coarse leaves, and stays. */
+ * two_phase_new makes of coarse leaves, and stays. */
 START_TEST(narrow_outlet_is_on_the_finest_level) {
   const double h = 1.0 / (1 << FINE);
   struct opening opening = {0.5, 0.5 + 3 * h, NULL};
@@ -173,9 +173,9 @@ START_TEST(narrow_outlet_is_on_the_finest_level) {
       opening_params(&opening, BOUNDARY_OUTFLOW, BOUNDARY_SLIP);
   follow(&params);
   struct forest_layout layout;
-  simulation_layout(&params, &layout);
-  struct simulation *sim =
-      simulation_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
+  two_phase_layout(&params, &layout);
+  struct two_phase *sim =
+      two_phase_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
   const bool before = sim->pressure_set;
   openings_refine(sim);
   const struct mesh *mesh = sim->mesh;
@@ -190,7 +190,7 @@ START_TEST(narrow_outlet_is_on_the_finest_level) {
   const bool after = sim->pressure_set, fine = openings_are_fine(sim);
   const bool changed = adapt_grid(sim);
   const double cells = (double)forest_nleaves_global(sim->forest);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   side_map_destroy(opening.map);
   ck_assert(!before);
   ck_assert(after);
@@ -209,7 +209,7 @@ START_TEST(large_opening_is_fine_at_its_ends) {
   struct params params =
       opening_params(&opening, BOUNDARY_INFLOW, BOUNDARY_OUTFLOW);
   follow(&params);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const struct mesh *mesh = sim->mesh;
   double coarsest[2] = {0};
   for (int32_t f = 0; f < mesh->nfaces; f++) {
@@ -219,7 +219,7 @@ START_TEST(large_opening_is_fine_at_its_ends) {
     *most = fmax(*most, mesh->face_h[f]);
   }
   for (int k = 0; k < 2; k++) coarsest[k] = mesh_max(mesh, coarsest[k]);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   side_map_destroy(opening.map);
   ck_assert(coarsest[0] == 1.0 / (1 << FINE));
   ck_assert_double_ge(coarsest[1], 4.0 / (1 << FINE));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "talus/percolation.h"
+#include "talus/two_phase/percolation.h"
 
 #include <check.h>
 
@@ -57,7 +57,7 @@ struct effect {
   double work;   /* of the grains' weight */
 };
 
-static double gas_below(const struct simulation *sim) {
+static double gas_below(const struct two_phase *sim) {
   double sum = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     if (sim->mesh->x[i][DIM - 1] > 0.45) continue;
@@ -68,7 +68,7 @@ static double gas_below(const struct simulation *sim) {
 
 static struct effect percolate(const struct params *params, int calls,
                                double dt) {
-  struct simulation *sim = sim_new(params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(params, MPI_COMM_WORLD);
   struct effect effect = {.gas = {gas_below(sim)}};
   const double volume = integral(sim->mesh, sim->c->v);
   double *start = MEM_NEW(double, sim->mesh->nleaves);
@@ -88,7 +88,7 @@ static struct effect percolate(const struct params *params, int calls,
   effect.passed = sim->percolation.volume;
   effect.work = sim->energy.dissipated;
   mem_free(start);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return effect;
 }
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A closed box behaves as one that is open on top, in pressure at rest and in
  * what friction makes of a column that collapses. */
-#include "talus/pressure_level.h"
+#include "talus/two_phase/pressure_level.h"
 
 #include <check.h>
 
 #include "sim.h"
-#include "talus/diagnostics.h"
+#include "talus/two_phase/measure.h"
 
 Suite *pressure_level_suite(void);
 
@@ -26,7 +26,7 @@ static struct params still_params(bool closed) {
 
 /* Largest difference of p to the weight of what lies above, with p = level on
  * top; inside leaves that hold one phase. */
-static double error_of_weight(const struct simulation *sim, double level) {
+static double error_of_weight(const struct two_phase *sim, double level) {
   double most = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     const double z = sim->mesh->x[i][DIM - 1], c = sim->c->v[i];
@@ -42,12 +42,12 @@ START_TEST(gas_in_a_closed_box_has_the_pressure_of_an_open_one) {
   bool done = true;
   for (int closed = 0; closed < 2; closed++) {
     struct params params = still_params(closed);
-    struct simulation *sim = simulation_new(&params);
+    struct two_phase *sim = two_phase_new(&params);
     for (int k = 0; k < 3; k++) {
       done = done && step_advance(sim, 0.01) == EXIT_DONE;
     }
     error[closed] = error_of_weight(sim, 0);
-    simulation_destroy(sim);
+    two_phase_destroy(sim);
   }
   ck_assert(done);
   ck_assert_double_le(error[0], 1e-9);
@@ -68,10 +68,10 @@ START_TEST(a_point_has_the_pressure_of_the_case) {
   for (int d = 0; d < DIM; d++) {
     params.pressure_point[d] = point[_i][d == DIM - 1];
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const bool done = step_advance(sim, 0.01) == EXIT_DONE;
   const double error = error_of_weight(sim, 2.5 - weight);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(error, 1e-9);
 }
@@ -83,9 +83,9 @@ START_TEST(without_gas_the_mean_of_the_box_is_taken) {
   double full = 2;
   params.shape.context = &full;
   params.pressure_level = 3;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double mean = integral(sim->mesh, sim->p->v);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_eq_tol(mean, 3, 1e-10);
 }
 END_TEST
@@ -103,14 +103,14 @@ static struct diagnostics collapse(enum pressure_at at, bool closed,
   rheology_set(&params.grains.rheology, "eta_max", 10);
   rheology_set(&params.grains.rheology, "rho", 1);
   params.tolerance_pressure = params.tolerance_viscous = 1e-4;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   while (*done && sim->time < 1) {
     *done = step_advance(sim, 1 - sim->time) == EXIT_DONE;
   }
   struct diagnostics d;
   diagnostics_measure(sim, &d);
   diagnostics_free(&d);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return d;
 }
 

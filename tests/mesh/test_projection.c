@@ -5,7 +5,7 @@
 
 #include "sim.h"
 #include "talus/hierarchy.h"
-#include "talus/properties.h"
+#include "talus/two_phase/properties.h"
 #include "transport.h"
 
 Suite *projection_suite(void);
@@ -69,7 +69,7 @@ END_TEST
  * on a fine band with coarser leaves above and below, 1: open at the top. */
 struct bed {
   struct params params;
-  struct simulation *sim;
+  struct two_phase *sim;
 };
 
 static double surface = 0.53;
@@ -84,11 +84,11 @@ static struct bed bed_new(int kind) {
 
 START_TEST(a_flat_bed_feels_no_acceleration) {
   struct bed bed = bed_new(_i);
-  struct simulation *sim = simulation_new(&bed.params);
+  struct two_phase *sim = two_phase_new(&bed.params);
   const double most = largest(sim, sim->g);
   const bool jumps =
       forest_nleaves_global(sim->forest) < 1 << DIM * bed.params.level_max;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(jumps == (_i & 1));
   /* of g = 1: the residual of 1e-13 / h, added up over the box. The solve may
    * stall above its target, at the round-off of p / (rho_2 h^2). */
@@ -101,7 +101,7 @@ END_TEST
  * sum from the top down is that of the leaves. */
 START_TEST(pressure_is_the_weight_above) {
   struct bed bed = bed_new(2 | _i);
-  struct simulation *sim = simulation_new(&bed.params);
+  struct two_phase *sim = two_phase_new(&bed.params);
   const double grains = 1, gas = 1e-3;
   double most = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -111,7 +111,7 @@ START_TEST(pressure_is_the_weight_above) {
     most = fmax(most, fabs(sim->p->v[i] - exact));
   }
   most = mesh_max(sim->mesh, most);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_le(most, 1e-11);
 }
 END_TEST
@@ -121,10 +121,10 @@ START_TEST(static_acceleration_is_solenoidal) {
   struct params params = box_params(DIM == 2 ? 5 : 4);
   params.shape = (struct function){column, NULL};
   params_follow_surface(&params, 2, 2);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double left = sim->pressure.residual_after;
   const double h = 1.0 / (1 << params.level_max);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   /* the target, or the round-off of p / (rho_2 h^2) */
   ck_assert_double_le(left, fmax(1e-13 / h, 1e-16 * 1e3 / (h * h)));
 }

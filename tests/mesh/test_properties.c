@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "talus/properties.h"
+#include "talus/two_phase/properties.h"
 
 #include <check.h>
 

@@ -23,10 +23,10 @@ static struct body off_centre = {{0.45, 0.55, 0.5}, 0.3};
 
 /* A ball of grains, velocities that vary on the scale of the box, a linear
  * pressure and the vortex on faces. */
-static struct simulation *state_new(const struct params *params, int base,
-                                    int level) {
-  struct simulation *sim = simulation_new_on(
-      params, grid_new(MPI_COMM_WORLD, 1, false, base, level));
+static struct two_phase *state_new(const struct params *params, int base,
+                                   int level) {
+  struct two_phase *sim =
+      two_phase_new_on(params, grid_new(MPI_COMM_WORLD, 1, false, base, level));
   fill_shape(sim->mesh, ball, &off_centre, sim->c->v);
   fill_cells(sim->mesh, wavy, sim->u);
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -39,7 +39,7 @@ static struct simulation *state_new(const struct params *params, int base,
 
 /* Divide and merge in patches that move with `round`; whole families are of
  * one mind. The patches lie on one side, so that leaves change ranks. */
-static void change_grid(struct simulation *sim, int round, int level_max) {
+static void change_grid(struct two_phase *sim, int round, int level_max) {
   const struct mesh *mesh = sim->mesh;
   int8_t *flag = MEM_NEW(int8_t, mesh->nleaves);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -59,7 +59,7 @@ static void change_grid(struct simulation *sim, int round, int level_max) {
 }
 
 /* Divide (1) or merge (-1) everything once. */
-static void change_all(struct simulation *sim, int8_t how) {
+static void change_all(struct two_phase *sim, int8_t how) {
   int8_t *flag = MEM_NEW(int8_t, sim->mesh->nleaves);
   struct forest_map map;
   memset(flag, how, (size_t)sim->mesh->nleaves);
@@ -73,7 +73,7 @@ enum { ROUNDS = 6, FINEST = DIM == 2 ? 6 : 5 };
 
 START_TEST(volume_and_momentum_are_conserved) {
   const struct params params = box_params(5);
-  struct simulation *sim = state_new(&params, 2, FINEST - 1);
+  struct two_phase *sim = state_new(&params, 2, FINEST - 1);
   const double volume = integral(sim->mesh, sim->c->v);
   const double mass = sim_momentum(sim, -1);
   double before[DIM], lost = 0, drift = 0, excess = 0;
@@ -93,7 +93,7 @@ START_TEST(volume_and_momentum_are_conserved) {
     if (n > greatest) greatest = n;
   }
   excess = mesh_max(sim->mesh, excess);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_int_gt(greatest, fewest); /* the grid did change */
   /* round-off, of random sign over a thousand cells */
   ck_assert_double_le(drift, 1e-14);
@@ -104,7 +104,7 @@ END_TEST
 
 START_TEST(a_linear_pressure_stays_so) {
   const struct params params = box_params(5);
-  struct simulation *sim = state_new(&params, 2, FINEST - 1);
+  struct two_phase *sim = state_new(&params, 2, FINEST - 1);
   double most = 0;
   for (int round = 0; round < ROUNDS; round++) {
     change_grid(sim, round, FINEST);
@@ -113,7 +113,7 @@ START_TEST(a_linear_pressure_stays_so) {
     }
   }
   most = mesh_max(sim->mesh, most);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_le(most, 1e-14);
 }
 END_TEST
@@ -123,7 +123,7 @@ END_TEST
 START_TEST(dividing_and_merging_back_changes_nothing) {
   enum { LEVEL = 4 };
   const struct params params = box_params(LEVEL);
-  struct simulation *sim = state_new(&params, LEVEL, LEVEL);
+  struct two_phase *sim = state_new(&params, LEVEL, LEVEL);
   struct field *field[DIM + 2] = {sim->c, sim->p};
   double *before[DIM + 2], *after[DIM + 2], most = 0;
   for (int d = 0; d < DIM; d++) field[2 + d] = sim->u[d];
@@ -143,7 +143,7 @@ START_TEST(dividing_and_merging_back_changes_nothing) {
     mem_free(after[k]);
   }
   const int64_t n = forest_nleaves_global(sim->forest);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_int_eq(n, 1 << DIM * LEVEL);
   ck_assert_double_le(most, 1e-14);
 }
@@ -155,8 +155,8 @@ START_TEST(children_are_cut_by_the_plane_of_their_parent) {
   double height = 0.53;
   struct params params = box_params(4);
   params.shape = (struct function){below, &height};
-  struct simulation *sim =
-      simulation_new_on(&params, grid_new(MPI_COMM_WORLD, 1, false, 4, 4));
+  struct two_phase *sim =
+      two_phase_new_on(&params, grid_new(MPI_COMM_WORLD, 1, false, 4, 4));
   double most = 0;
   sim_fill(sim);
   change_all(sim, 1);
@@ -166,7 +166,7 @@ START_TEST(children_are_cut_by_the_plane_of_their_parent) {
     most = fmax(most, fabs(sim->c->v[i] - fmin(fmax(depth, 0), 1)));
   }
   most = mesh_max(sim->mesh, most);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_le(most, 1e-13);
 }
 END_TEST
@@ -176,14 +176,14 @@ END_TEST
 START_TEST(face_velocities_stay_solenoidal) {
   enum { LEVEL = 4 };
   const struct params params = box_params(LEVEL);
-  struct simulation *sim = state_new(&params, LEVEL, LEVEL);
+  struct two_phase *sim = state_new(&params, LEVEL, LEVEL);
   double most = clean_divergence(sim->mesh, sim->u_f->v);
   change_grid(sim, 0, LEVEL + 1);
   most = fmax(most, clean_divergence(sim->mesh, sim->u_f->v));
   const bool jumps = forest_nleaves_global(sim->forest) > 1 << DIM * LEVEL;
   change_all(sim, -1);
   most = fmax(most, clean_divergence(sim->mesh, sim->u_f->v));
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(jumps);
   ck_assert_double_le(most, 1e-15 * (2 << LEVEL) * 4); /* of u / h */
 }
@@ -194,7 +194,7 @@ END_TEST
 START_TEST(leaves_that_stay_keep_their_sides) {
   enum { LEVEL = DIM == 2 ? 5 : 4 };
   const struct params params = box_params(LEVEL);
-  struct simulation *sim = state_new(&params, LEVEL - 2, LEVEL);
+  struct two_phase *sim = state_new(&params, LEVEL - 2, LEVEL);
   double *side[2][NFACE + 1], most = 0, count = 0;
   int32_t size = 1;
   for (int d = 0; d < DIM; d++) size *= 2 << LEVEL;
@@ -229,7 +229,7 @@ START_TEST(leaves_that_stay_keep_their_sides) {
     mem_free(side[0][f]);
     mem_free(side[1][f]);
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_gt(count, 0);
   ck_assert(most == 0);
 }
@@ -242,7 +242,7 @@ START_TEST(face_velocities_stay_accurate) {
   for (int k = 0; k < 2; k++) {
     const int level = 4 + k;
     const struct params params = box_params(level + 1);
-    struct simulation *sim = state_new(&params, level - 1, level);
+    struct two_phase *sim = state_new(&params, level - 1, level);
     const struct mesh *mesh;
     change_all(sim, 1);
     mesh = sim->mesh;
@@ -256,7 +256,7 @@ START_TEST(face_velocities_stay_accurate) {
       }
     }
     error[k] = mesh_sum(mesh, error[k]);
-    simulation_destroy(sim);
+    two_phase_destroy(sim);
   }
   ck_assert_double_ge(log2(error[0] / error[1]), 0.9);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "talus/rest.h"
+#include "talus/two_phase/rest.h"
 
 #include <check.h>
 
@@ -8,7 +8,7 @@
 Suite *rest_suite(void);
 
 /* One leaf, of the last rank, has fraction c and speed u. */
-static void set_one(struct simulation *sim, double c, double u) {
+static void set_one(struct two_phase *sim, double c, double u) {
   const struct mesh *mesh = sim->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const bool here = mesh->rank == mesh->nranks - 1 && i == 0;
@@ -19,12 +19,12 @@ static void set_one(struct simulation *sim, double c, double u) {
 
 START_TEST(the_fastest_grains_are_looked_at) {
   const struct params params = box_params(2);
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   set_one(sim, 0.6, -3);
   const double grains = rest_fastest(sim);
   set_one(sim, 0.4, -3);
   const double gas = rest_fastest(sim);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_eq(grains, 3);
   ck_assert_double_eq(gas, 0);
 }
@@ -34,7 +34,7 @@ START_TEST(rest_is_slowness_for_a_time_without_break) {
   struct params params = box_params(2);
   params.rest_speed = 0.1;
   params.rest_time = 1;
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   bool reached[6];
   const double speed[6] = {0.01, 0.2, 0.01, 0.01, 0.05, 0.01};
   sim->dt = 0.3;
@@ -44,7 +44,7 @@ START_TEST(rest_is_slowness_for_a_time_without_break) {
   }
   params.rest_time = 0; /* not asked for */
   const bool unasked = rest_is_reached(sim);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   for (int k = 0; k < 5; k++) ck_assert(!reached[k]);
   ck_assert(reached[5]);
   ck_assert(!unasked);

@@ -42,7 +42,7 @@ static struct params plug_params(double friction, bool moves) {
 }
 
 /* Mean of u_x, and how far the leaves are from it. */
-static double plug_speed(const struct simulation *sim, double *spread) {
+static double plug_speed(const struct two_phase *sim, double *spread) {
   const double mean = integral(sim->mesh, sim->u[0]->v);
   double most = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -52,7 +52,7 @@ static double plug_speed(const struct simulation *sim, double *spread) {
   return mean;
 }
 
-static bool run_to(struct simulation *sim, double stop, double dt) {
+static bool run_to(struct two_phase *sim, double stop, double dt) {
   bool good = true;
   while (good && sim->time < stop * (1 - 1e-12)) {
     good = step_advance(sim, fmin(dt, stop - sim->time)) == EXIT_DONE;
@@ -64,11 +64,11 @@ static bool run_to(struct simulation *sim, double stop, double dt) {
 START_TEST(a_plug_is_slowed_at_the_right_rate) {
   const double friction = _i ? 0.5 : 2, weight = sin(SLOPE), stop = 1;
   struct params params = plug_params(friction, true);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   double spread;
   const bool done = run_to(sim, stop, DT);
   const double speed = plug_speed(sim, &spread);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   /* of 0.2 and 0.65; friction lags by dt, and dt/2 changes this by half */
   ck_assert_double_eq_tol(speed, START + (1 - friction) * weight * stop,
@@ -81,7 +81,7 @@ END_TEST
 START_TEST(a_plug_stops_and_stays) {
   const double weight = sin(SLOPE), stop = START / weight;
   struct params params = plug_params(2, true);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   double spread, late, rest;
   bool done = run_to(sim, 0.95 * stop, DT);
   const double before = plug_speed(sim, &spread);
@@ -90,7 +90,7 @@ START_TEST(a_plug_stops_and_stays) {
   done = done && run_to(sim, stop + 2, DT);
   rest = plug_speed(sim, &spread);
   const double lost = sim->energy.dissipated;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_gt(before, 0.01);
   ck_assert_double_le(fabs(late), 5e-3);
@@ -110,12 +110,12 @@ START_TEST(a_plug_at_rest_yields_at_its_friction) {
   const double friction = yields ? 0.9 : 1.1;
   struct params params = plug_params(friction, false);
   params.theta = _i & 2 ? 0.5 : 1;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   double spread;
   const bool done = run_to(sim, 1, DT);
   const double speed = plug_speed(sim, &spread);
   const double free = (1 - friction) * sin(SLOPE);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   if (yields)
     ck_assert_double_eq_tol(speed, free, 0.1 * free);

@@ -4,7 +4,7 @@
 #include <check.h>
 
 #include "faces.h"
-#include "talus/properties.h"
+#include "talus/two_phase/properties.h"
 #include "talus/viscous.h"
 
 /* A block of grains, of viscosity 1, in a gas without any, which moves as it

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole time steps. */
-#include "talus/step.h"
+#include "talus/two_phase/step.h"
 
 #include <check.h>
 
 #include "sim.h"
 #include "talus/error.h"
-#include "talus/fractions.h"
+#include "talus/two_phase/fractions.h"
 #include "transport.h"
 
 Suite *step_suite(void);
 
-static bool advance(struct simulation *sim, int steps, double dt) {
+static bool advance(struct two_phase *sim, int steps, double dt) {
   bool good = true;
   for (int k = 0; k < steps && good; k++) {
     good = step_advance(sim, dt) == EXIT_DONE;
@@ -30,12 +30,12 @@ START_TEST(a_flat_bed_stays_still) {
   if (_i & 1) params_follow_surface(&params, 2, 1);
   if (_i & 2) params.boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
   if (_i & 4) params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double volume = integral(sim->mesh, sim->c->v);
   const bool done = advance(sim, 15, 0.05);
   const double cells = largest(sim, sim->u);
   const double drift = fabs(integral(sim->mesh, sim->c->v) / volume - 1);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   /* of sqrt(g H) = 0.7; the solvers stop at 1e-12 */
   ck_assert_double_le(cells, 1e-10 * sqrt(height));
@@ -70,13 +70,13 @@ START_TEST(a_tilted_bed_stays_still_across_levels) {
       (struct criterion){.type = CRITERION_FUNCTION,
                          .level = params.level_max,
                          .function = {strip, &params.level_max}};
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   int status = EXIT_DONE;
   for (int k = 0; k < 120 && status == EXIT_DONE; k++) {
     status = step_advance(sim, 0.05);
   }
   const double most = largest(sim, sim->u);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_int_eq(status, EXIT_DONE);
   ck_assert_double_le(most, 1e-10); /* round-off, not what has grown */
 }
@@ -104,14 +104,14 @@ START_TEST(a_dense_block_moves_on_through_light_gas) {
   params.pressure_level_given = true;
   params.shape = (struct function){block, NULL};
   params.velocity[0] = (struct function){block_speed, NULL};
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const bool done = advance(sim, 3, 1);
   double fastest = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     if (sim->c->v[i] > 0.5) fastest = fmax(fastest, fabs(sim->u[0]->v[i]));
   }
   fastest = mesh_max(sim->mesh, fastest);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(fastest, 1, 0.01);
 }
@@ -136,14 +136,14 @@ START_TEST(cut_leaves_start_with_the_momentum_of_their_grains) {
   params.pressure_level_given = true;
   params.shape = (struct function){slanted, NULL};
   params.velocity[0] = (struct function){slanted_speed, NULL};
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
     const double c = sim->c->v[i], rho = params.gas.density;
     const double momentum = (rho + (1 - rho) * c) * sim->u[0]->v[i];
     most = fmax(most, fabs(momentum - c));
   }
   most = mesh_max(sim->mesh, most);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   /* a lattice of 8 points along an edge */
   ck_assert_double_le(most, 0.1);
 }
@@ -158,7 +158,7 @@ START_TEST(a_collapse_keeps_its_volume) {
   params_follow_surface(&params, 3, 2);
   if (_i & 1) params.boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
   if (_i & 2) params.cfl = 1;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double volume = integral(sim->mesh, sim->c->v);
   const double cells = (double)forest_nleaves_global(sim->forest);
   double drift = 0, excess = 0;
@@ -171,7 +171,7 @@ START_TEST(a_collapse_keeps_its_volume) {
   }
   excess = mesh_max(sim->mesh, excess);
   const double speed = largest(sim, sim->u);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert(adapted);
   ck_assert_double_gt(speed, 0.1); /* it does fall */
@@ -205,7 +205,7 @@ START_TEST(sweeps_that_overfill_are_repeated_in_parts) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){taylor_green, &kAxis[d]};
   }
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const double before = integral(sim->mesh, sim->c->v);
   double rate = 0;
   for (int32_t f = 0; f < sim->mesh->nfaces; f++) {
@@ -216,7 +216,7 @@ START_TEST(sweeps_that_overfill_are_repeated_in_parts) {
   fractions_advance(sim, 1 / rate, _i ? rate : VOF_CFL * rate);
   const double after = integral(sim->mesh, sim->c->v);
   const double excess = mesh_max(sim->mesh, vof_excess(sim->mesh, sim->c->v));
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_eq_tol(after, before, 1e-14);
   if (_i) {
     ck_assert_double_le(excess, VOF_EMPTY);
@@ -228,7 +228,7 @@ END_TEST
 
 /* Numbers that tell one state from another, the last with all leaves in it. */
 enum { NNUMBERS = 6 + DIM };
-static void numbers(const struct simulation *sim, double out[NNUMBERS]) {
+static void numbers(const struct two_phase *sim, double out[NNUMBERS]) {
   const struct mesh *mesh = sim->mesh;
   double sum[NNUMBERS] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -259,11 +259,11 @@ START_TEST(the_answer_does_not_depend_on_ranks) {
   double out[2][NNUMBERS], most = 0;
   bool done = true;
   for (int k = 0; k < 2; k++) {
-    struct simulation *sim =
+    struct two_phase *sim =
         sim_new(&params, k ? MPI_COMM_WORLD : MPI_COMM_SELF);
     done = advance(sim, DIM == 2 ? 15 : 6, 1) && done;
     numbers(sim, out[k]);
-    simulation_destroy(sim);
+    two_phase_destroy(sim);
   }
   for (int k = 0; k < NNUMBERS; k++) {
     most = fmax(most, fabs(out[1][k] - out[0][k]));
@@ -276,7 +276,7 @@ END_TEST
 enum look { AS_IT_IS, LOOKED_AT, PLANES_ANEW, FAILED_ONCE, NLOOKS };
 
 /* A step, and its repetitions, whose solves may do nothing. */
-static void fail_a_step(struct simulation *sim, struct params *params) {
+static void fail_a_step(struct two_phase *sim, struct params *params) {
   const int most = params->max_iterations;
   params->max_iterations = 0;
   ck_assert_int_eq(step_advance(sim, 1), EXIT_NUMERICAL);
@@ -291,7 +291,7 @@ static double fall(enum look look, double out[NNUMBERS]) {
   params.shape = (struct function){column, NULL};
   params.tolerance_pressure = params.tolerance_viscous = 1e-4;
   params_follow_surface(&params, 3, 2);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   for (int k = 0; k < 40 && divergence < 1; k++) {
     if (look == FAILED_ONCE && k % 8 == 7) fail_a_step(sim, &params);
     const bool done = step_advance(sim, 1) == EXIT_DONE;
@@ -304,7 +304,7 @@ static double fall(enum look look, double out[NNUMBERS]) {
     if (look == PLANES_ANEW) sim->planes_hold = false;
   }
   numbers(sim, out);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return divergence;
 }
 
@@ -330,7 +330,7 @@ static double decay_error(int level, double theta, double *shape) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){taylor_green, &kAxis[d]};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double dt = 0.4 / (1 << level);
   bool done = true;
   while (done && sim->time < end - 1e-12) {
@@ -351,7 +351,7 @@ static double decay_error(int level, double theta, double *shape) {
   *shape = mesh_max(sim->mesh, *shape);
   const double ratio =
       mesh_sum(sim->mesh, energy[1]) / mesh_sum(sim->mesh, energy[0]);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   if (!done) return INFINITY;
   return fabs(ratio / (exact * exact) - 1);
 }
@@ -380,7 +380,7 @@ START_TEST(momentum_is_conserved_in_a_periodic_box) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){uneven, &kAxis[d]};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   double before[DIM], most = 0;
   for (int d = 0; d < DIM; d++) before[d] = sim_momentum(sim, d);
   const bool done = advance(sim, 10, 1);
@@ -388,7 +388,7 @@ START_TEST(momentum_is_conserved_in_a_periodic_box) {
     most = fmax(most, fabs(sim_momentum(sim, d) - before[d]));
   }
   const double tolerance = params.tolerance_viscous;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   /* all but the residual of the viscous solve, at most this per step */
   ck_assert_double_le(most, 10 * 1.5 * tolerance);
@@ -405,7 +405,7 @@ START_TEST(a_stiff_fluid_comes_to_rest_in_its_mean_flow) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){uneven, &kAxis[d]};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double start = largest(sim, sim->u);
   double most = 0;
   bool done = true;
@@ -413,7 +413,7 @@ START_TEST(a_stiff_fluid_comes_to_rest_in_its_mean_flow) {
     done = advance(sim, 1, 1);
     most = fmax(most, largest(sim, sim->u));
   }
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(most, start);
 }
@@ -436,7 +436,7 @@ START_TEST(a_dense_square_drifts_with_its_gas) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){drift, &kAxis[d]};
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const bool done = advance(sim, 20, 1);
   double most = 0;
   for (int d = 0; d < DIM; d++) {
@@ -446,7 +446,7 @@ START_TEST(a_dense_square_drifts_with_its_gas) {
     }
   }
   most = mesh_max(sim->mesh, most);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(most, 1e-10);
 }
@@ -461,7 +461,7 @@ START_TEST(a_drop_falls_freely) {
   params.shape = (struct function){ball, &body};
   params.gas.rheology = newtonian(1e-6);
   params_follow_surface(&params, 3, 2);
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double mass = integral(sim->mesh, sim->c->v);
   bool done = true;
   double speed = 0, fall = 0;
@@ -477,7 +477,7 @@ START_TEST(a_drop_falls_freely) {
   fall = mesh_sum(sim->mesh, fall);
   const double most = largest(sim, sim->u), time = sim->time;
   const double exact = 0.5 * pow(time - 0.5 * sim->dt, 2); /* c lives there */
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   /* buoyancy and added mass take 0.3 %, the grid 0.2 % in two dimensions and
    * 1.4 % in three, where the drop is ten leaves wide */
@@ -494,11 +494,11 @@ START_TEST(the_mean_pressure_is_that_of_the_case) {
   params.shape = (struct function){below, &height};
   params.pressure_level_given = true;
   params.pressure_level = 3.5;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double start = integral(sim->mesh, sim->p->v);
   const bool done = advance(sim, 3, 0.01);
   const double end = integral(sim->mesh, sim->p->v);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(start, 3.5, 1e-12);
   ck_assert_double_eq_tol(end, 3.5, 1e-12);
@@ -522,11 +522,11 @@ START_TEST(an_inflow_brings_its_fraction) {
   params.boundary[0] = (struct boundary){
       .type = BOUNDARY_INFLOW, .velocity = {1, 0, 0}, .fraction = 0.3};
   params.boundary[1] = (struct boundary){.type = BOUNDARY_OUTFLOW};
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const bool done = advance(sim, 6, 0.01);
   const double carried = 0.3 * (sim->time - 0.5 * sim->dt);
   const double volume = integral(sim->mesh, sim->c->v);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(volume, carried, 1e-12);
 }
@@ -542,11 +542,11 @@ START_TEST(a_moving_wall_is_felt_from_rest) {
   params.tolerance_viscous = 1e-4;
   params.boundary[2 * DIM - 1] =
       (struct boundary){.type = BOUNDARY_NO_SLIP, .velocity = {2, 0, 0}};
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const bool done = advance(sim, 1, 1);
   const double dt = sim->dt;
   const int iterations = sim->viscous.iterations;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(dt, 0.5 / 32 / 2 + 1e-15); /* cfl h / U */
   ck_assert_int_le(iterations, 5);
@@ -562,12 +562,12 @@ START_TEST(an_opening_lets_no_grains_in) {
   params.velocity[DIM - 1] = (struct function){one, NULL};
   params.boundary[2 * DIM - 2] = params.boundary[2 * DIM - 1] =
       (struct boundary){.type = BOUNDARY_OUTFLOW};
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const double before = integral(sim->mesh, sim->c->v);
   const bool done = advance(sim, 10, 0.02);
   const double after = integral(sim->mesh, sim->c->v);
   const double speed = largest(sim, sim->u);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_gt(speed, 0.5); /* it has moved */
   ck_assert_double_eq_tol(after / before, 1, 1e-12);
@@ -603,7 +603,7 @@ START_TEST(a_heap_less_steep_than_friction_rests) {
   params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
   params.boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
   params.tolerance_pressure = params.tolerance_viscous = 1e-6;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   bool done = true;
   double fastest = 0;
   while (done && sim->time < 1) done = step_advance(sim, 0.02) == EXIT_DONE;
@@ -613,7 +613,7 @@ START_TEST(a_heap_less_steep_than_friction_rests) {
     }
   }
   fastest = mesh_max(sim->mesh, fastest);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(fastest, 2e-3); /* of sqrt(g H) */
 }
@@ -630,11 +630,11 @@ START_TEST(repetitions_close_in_on_a_velocity) {
   params.shape = (struct function){column, NULL};
   for (int k = 0; k < 3; k++) {
     params.picard = 1 << k;
-    struct simulation *sim = simulation_new(&params);
+    struct two_phase *sim = two_phase_new(&params);
     done = advance(sim, 5, 0.01) && done;
     change[k] = sim->repeat_change;
     iterations[k] = sim->viscous.iterations;
-    simulation_destroy(sim);
+    two_phase_destroy(sim);
   }
   ck_assert(done);
   ck_assert_double_gt(change[2], 0);
@@ -657,10 +657,10 @@ START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
   params.cfl = 0.7;
   params.grains.rheology = newtonian(0.1);
   params.shape = (struct function){column, NULL};
-  struct simulation *sim[2];
+  struct two_phase *sim[2];
   for (int k = 0; k < 2; k++) {
     params.picard = 0;
-    sim[k] = simulation_new(&params);
+    sim[k] = two_phase_new(&params);
     done = advance(sim[k], 15, 1) && done;
     params.picard = k;
     done = advance(sim[k], 1, 1) && done;
@@ -675,7 +675,7 @@ START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
     }
   }
   const double part = sqrt(mesh_sum(mesh, sum[0]) / mesh_sum(mesh, sum[1]));
-  for (int k = 0; k < 2; k++) simulation_destroy(sim[k]);
+  for (int k = 0; k < 2; k++) two_phase_destroy(sim[k]);
   ck_assert(done);
   ck_assert_double_le(part, DIM == 2 ? 1.6e-3 : 3.2e-3);
 }
@@ -688,7 +688,7 @@ START_TEST(a_solve_that_fails_is_told) {
   params.shape = (struct function){column, NULL};
   params.tolerance_pressure = 1e-14;
   params.max_iterations = 1;
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   const double start = 0.01;
   double moved = 0;
   for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -702,7 +702,7 @@ START_TEST(a_solve_that_fails_is_told) {
     }
   }
   moved = mesh_max(sim->mesh, moved);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_eq(moved, 0);
   ck_assert_int_eq(solve, SOLVE_STALLED);
   ck_assert_int_eq(status, EXIT_NUMERICAL);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "talus/step_floor.h"
+#include "talus/two_phase/step_floor.h"
 
 #include <check.h>
 
@@ -29,7 +29,7 @@ static struct trial try_speed(double u) {
   params.velocity[0] = (struct function){wind, NULL};
   params.boundary[0].type = params.boundary[1].type = BOUNDARY_PERIODIC;
   speed = u;
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   struct trial trial = {.floor = step_floor(sim)};
   step_advance(sim, 1);
   trial.dt = sim->dt;
@@ -41,7 +41,7 @@ static struct trial try_speed(double u) {
   trial.lands = step_is_too_short(sim, trial.floor, &taken);
   taken = (struct step_taken){sim->time, 0, sim->dt};
   trial.stands = step_is_too_short(sim, trial.floor, &taken);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   return trial;
 }
 

@@ -65,13 +65,13 @@ START_TEST(a_surface_across_levels_stays_at_rest) {
   struct surface surface = SURFACE[_i];
   for (double ratio = 1e3; ratio < 2e6; ratio *= DIM == 2 ? 10 : 1e3) {
     struct params params = still_params(&surface, ratio);
-    struct simulation *sim = simulation_new(&params);
+    struct two_phase *sim = two_phase_new(&params);
     bool done = true;
     for (int k = 0; k < STEPS && done; k++) {
       done = step_advance(sim, 0.1) == EXIT_DONE;
     }
     const double speed = largest(sim, sim->u);
-    simulation_destroy(sim);
+    two_phase_destroy(sim);
     ck_assert(done);
     ck_assert_double_le(speed, 3e-8); /* 1e-7 sqrt(9.81) m/s of a box of 1 m */
   }

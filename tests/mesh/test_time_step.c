@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sudden starts: the length of a step, and c in step with it. */
-#include "talus/time_step.h"
+#include "talus/two_phase/time_step.h"
 
 #include <check.h>
 #include <string.h>
 
 #include "sim.h"
-#include "talus/conditions.h"
 #include "talus/error.h"
-#include "talus/fractions.h"
 #include "talus/memory.h"
+#include "talus/two_phase/conditions.h"
+#include "talus/two_phase/fractions.h"
 #include "talus/vof.h"
 #include "transport.h"
 
@@ -34,13 +34,13 @@ START_TEST(a_fall_from_rest_keeps_to_the_bound) {
   for (int side = 0; side < 2; side++) {
     params.boundary[side].type = BOUNDARY_PERIODIC;
   }
-  struct simulation *sim = simulation_new(&params);
+  struct two_phase *sim = two_phase_new(&params);
   for (int k = 0; k < 6 && done; k++) {
     done = step_advance(sim, 1e6) == EXIT_DONE;
     most = fmax(most, sim->dt * time_step_rate(sim));
   }
   const double time = sim->time, speed = largest(sim, sim->u);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(most, 1.8 * params.cfl * (1 + 1e-9));
   ck_assert_double_ge(most, params.cfl); /* and are as long as they may be */
@@ -70,7 +70,7 @@ START_TEST(c_is_in_0_1_however_long_it_has_lagged) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){squeeze, &axis[d]};
   }
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const struct mesh *mesh = sim->mesh;
   const double before = integral(mesh, sim->c->v);
   const double rate = time_step_rate(sim);
@@ -98,7 +98,7 @@ START_TEST(c_is_in_0_1_however_long_it_has_lagged) {
   }
   moved = mesh_max(mesh, moved), left = mesh_max(mesh, left);
   mem_free(c);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert_double_eq_tol(after, before, 1e-13);
   ck_assert_double_le(excess, VOF_EMPTY);
   ck_assert_double_gt(moved, 0.9);
@@ -108,12 +108,12 @@ END_TEST
 
 /* A bed at rest, stopped after a long step. */
 static double height = 0.53;
-static struct simulation *bed_at_rest(struct params *params) {
+static struct two_phase *bed_at_rest(struct params *params) {
   *params = box_params(DIM == 2 ? 5 : 4);
   params->shape = (struct function){below, &height};
   params->tolerance_pressure = params->tolerance_viscous = 1e-12;
   params->boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
-  struct simulation *sim = simulation_new(params);
+  struct two_phase *sim = two_phase_new(params);
   ck_assert_int_eq(step_advance(sim, 0.4), EXIT_DONE);
   conditions_measure(sim, &sim->conditions);
   return sim;
@@ -123,7 +123,7 @@ static struct simulation *bed_at_rest(struct params *params) {
  * is booked. */
 START_TEST(another_gravity_is_a_new_start) {
   struct params params;
-  struct simulation *sim = bed_at_rest(&params);
+  struct two_phase *sim = bed_at_rest(&params);
   const double before = sim->conditions.energy;
   params.gravity[DIM - 1] *= 10;
   conditions_renew(sim);
@@ -132,7 +132,7 @@ START_TEST(another_gravity_is_a_new_start) {
   for (int k = 0; k < 5; k++)
     done = done && step_advance(sim, 0.4) == EXIT_DONE;
   const double speed = largest(sim, sim->u);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(changed, 9 * before, 1e-12 * before);
   ck_assert_double_eq(dt, 0);
@@ -143,12 +143,12 @@ END_TEST
 /* A tilt lets it go: dt is that of a start. */
 START_TEST(a_tilt_is_a_sudden_start) {
   struct params params;
-  struct simulation *sim = bed_at_rest(&params);
+  struct two_phase *sim = bed_at_rest(&params);
   params.gravity[0] = 1;
   conditions_renew(sim);
   const bool done = step_advance(sim, 0.4) == EXIT_DONE;
   const double dt = sim->dt, h = sim->mesh->h[0];
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(dt, 0.1 * sqrt(h));
 }
@@ -156,7 +156,7 @@ END_TEST
 
 START_TEST(the_same_conditions_change_nothing) {
   struct params params;
-  struct simulation *sim = bed_at_rest(&params);
+  struct two_phase *sim = bed_at_rest(&params);
   const double dt = sim->dt;
   const size_t bytes = (size_t)sim->mesh->nleaves * sizeof(double);
   double *p = MEM_NEW(double, sim->mesh->nleaves);
@@ -165,7 +165,7 @@ START_TEST(the_same_conditions_change_nothing) {
   const bool same = sim->dt == dt && sim->energy.changed == 0 &&
                     memcmp(p, sim->p->v, bytes) == 0;
   mem_free(p);
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(same);
 }
 END_TEST

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The work of viscosity on the grains, and of walls that move. */
-#include "talus/viscous_work.h"
+#include "talus/two_phase/viscous_work.h"
 
 #include <check.h>
 #include <math.h>
@@ -20,7 +20,7 @@ static double height(void *context, const double x[3]) {
   return x[DIM - 1];
 }
 
-static double kinetic(const struct simulation *sim) {
+static double kinetic(const struct two_phase *sim) {
   double sum = 0;
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
@@ -31,7 +31,7 @@ static double kinetic(const struct simulation *sim) {
   return mesh_sum(sim->mesh, sum);
 }
 
-static bool advance(struct simulation *sim, int nsteps, double dt) {
+static bool advance(struct two_phase *sim, int nsteps, double dt) {
   bool done = true;
   for (int k = 0; k < nsteps && done; k++) {
     done = step_advance(sim, dt) == EXIT_DONE;
@@ -51,11 +51,11 @@ START_TEST(dissipated_is_the_kinetic_energy_lost) {
   params.picard = _i;
   params.theta = _i == 2 ? 0.5 : 1;
   params.cfl = 1;
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const double before = kinetic(sim);
   const bool done = advance(sim, 3, 0.2);
   const double lost = before - kinetic(sim), heat = sim->energy.dissipated;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_gt(lost, 0.5 * before);
   ck_assert_double_eq_tol(heat, lost, 1e-9 * before);
@@ -73,10 +73,10 @@ START_TEST(moving_walls_heat_the_grains) {
   params.boundary[2 * DIM - 1].type = BOUNDARY_NO_SLIP;
   params.boundary[2 * DIM - 1].velocity[0] = 1;
   params.velocity[0] = (struct function){height, NULL};
-  struct simulation *sim = sim_new(&params, MPI_COMM_WORLD);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const bool done = advance(sim, 3, 1);
   const double heat = sim->energy.dissipated, time = sim->time;
-  simulation_destroy(sim);
+  two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(heat, kEta * time, 1e-6 * kEta * time);
 }

@@ -3,7 +3,7 @@
 
 #include <check.h>
 
-#include "../../src/tree/builder.h"
+#include "../../tree/builder.h"
 #include "talus/error.h"
 
 Suite *count_suite(void);

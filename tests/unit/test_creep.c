@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "talus/creep.h"
+#include "talus/two_phase/creep.h"
 
 #include <check.h>
 #include <math.h>

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Density, gravity and viscosity of the mixture from c, strain rate and p.
+ *
+ *   rho = c rho_1 + (1 - c) rho_2              [lagree_staron_popinet_2011,
+ *   eta = 1 / (c/eta_1 + (1 - c)/eta_2)         eqs. 2.7, 2.8]
+ * The density of a face is the mean of those of its two leaves, over levels
+ * too: a face between light leaves may not be heavy (projection.h). The
+ * viscosity of a face takes the part theta of the line between its nodes that
+ * lies below the planes of the two leaves: phases in series, as a layer sheared
+ * along its surface feels them. The mean of c would put gas between a cut
+ * cell more than half full and the grains below it, and the top layer would
+ * slide. For the same reason a node starts in the phase that has most of the
+ * mass of its leaf, as the velocity is that one's: at the surface if its centre
+ * is on the other side. Cut leaves less than half full would else lie on a
+ * cushion of gas: the surface of a heap at rest, slope 0.25, mu_s = 0.32,
+ * crept at 0.045, 0.022, 0.007 sqrt(g L0) on cells of L0/16, 32, 64, whatever
+ * eta_max; now at less than 5e-4. Both parts of a line share the stress, each
+ * with a shear rate of its own. eta of each phase comes from the face's own
+ * strain rate and pressure:
+ *   shear_rate = sqrt(2 D:D), normal derivatives from the two nodes,
+ *   tangential ones the mean of central differences at both, but one-sided
+ *   beside the surface (skin.h); the pressure
+ *   varies along the line as it does at rest, with slopes in proportion to
+ *   the densities of the two halves; at a wall dp/dn = rho g_n.
+ *
+ * Gravity on faces is balanced by the pressure where the surface lies, not
+ * where the face does. With p = p' + W, W = rho g.(x - Z), what is left of
+ * gravity is -[rho] g.(x_S - Z) grad c with x_S on the surface, a gradient for
+ * a surface at rest. So it is discretised as that of p is, over levels too:
+ *   a_f = ((W_1 - W_0) - [rho] g.(x_S - Z) (c_1 - c_0)) / (rho_f h)
+ * from the nodes of the face, W and c filled as p is (mesh_fill_potential); x_S
+ * is the mean over its leaves of the centroids of their planes. Away from the
+ * surface a_f = g_d. A flat bed at any angle with its gravity then rests to
+ * round-off. Gravity along a periodic axis has no potential; it is added as it
+ * is.
+ */
+#ifndef TALUS_TWO_PHASE_PROPERTIES_H
+#define TALUS_TWO_PHASE_PROPERTIES_H
+
+#include <stdbool.h>
+
+#include "talus/mesh.h"
+#include "talus/skin.h"
+
+struct phase;
+
+/* Fractions below this count as gas for properties and refinement. */
+#define PROPERTIES_GAS 1e-6
+
+/* rho [nleaves] of leaves; alpha_f [nfaces_all] = 1/rho on faces, 0 on closed
+ * patches. density[0]: grains, [1]: gas. c filled. Collective. */
+void properties_density(const struct mesh *mesh, const double density[2],
+                        const double *c, const bool *closed, double *rho,
+                        double *alpha_f);
+
+struct balance {
+  double gravity[DIM]; /* along axes that are not periodic, m/s^2 */
+  double along[DIM];   /* along periodic axes */
+  double origin[DIM];  /* Z, anywhere in the box */
+  const double *rho;   /* [ncells] filled, by which p is; NULL: as if even */
+  /* scratch [ncells]: W; g.(x_S - Z) and 1 in leaves with a surface, else 0;
+   * the same with the leaves next to them */
+  double *weight, *level, *count, *near_level, *near_count;
+};
+
+/* Gravity a_f on faces [nfaces_all], m/s^2, 0 on closed patches. c filled;
+ * normal, plane: the planes of cut leaves (vof_reconstruct); alpha_f as
+ * above. Collective. */
+void properties_gravity(const struct mesh *mesh, const double density[2],
+                        const struct balance *balance, const double *c,
+                        double *const normal[DIM], const double *plane,
+                        const double *alpha_f, double *gravity_f);
+
+/* shear_f [nfaces] = sqrt(2 D:D) on our own faces; skin: of the mesh, or NULL;
+ * u[e] filled. */
+void properties_shear_rate(const struct mesh *mesh, const struct skin *skin,
+                           double *const u[DIM], double *shear_f);
+
+/* eta_f [nfaces_all], Pa s, at a time, s. gas NULL: grains only. c, p filled;
+ * normal, plane: the planes of cut leaves; shear_f as above; work: two scratch
+ * arrays [nfaces]. Collective. */
+void properties_viscosity(const struct mesh *mesh, double time,
+                          const struct phase *grains, const struct phase *gas,
+                          const double gravity[DIM], const double *c,
+                          double *const normal[DIM], const double *plane,
+                          const double *p, const bool *closed,
+                          const double *shear_f, double *const work[2],
+                          double *eta_f);
+
+#endif

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Simulation: the state of the two-phase incompressible model.
+ *
+ * Staggered in time: after step n, velocity u^n at cell centres and u_f^n
+ * on faces at `time`; volume fraction c and pressure p at time - dt/2.
+ */
+#ifndef TALUS_TWO_PHASE_STATE_H
+#define TALUS_TWO_PHASE_STATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "talus/field.h"
+#include "talus/params.h"
+#include "talus/solve.h"
+#include "talus/two_phase/conditions.h"
+#include "talus/two_phase/percolation.h"
+
+enum { TWO_PHASE_MAX_KNOWN = 8 };
+
+struct clean;
+struct forest;
+struct hierarchy;
+struct level_raster;
+struct skin;
+
+/* Energies of the grains, per unit width in 2D, in J/m (J in 3D). */
+struct energy {
+  double kinetic, potential;
+  double dissipated; /* by viscosity since t = 0 (viscous_work.h) */
+  double initial;    /* kinetic + potential at t = 0 */
+  double changed;    /* added by restarts with other conditions since then */
+  double gas;        /* kinetic + potential of the gas at t = 0, and what such
+                      * restarts have added */
+  double gas_dissipated; /* as `dissipated` */
+};
+
+/* Stages of a step (step.c), for --timing. */
+enum step_stage {
+  STAGE_FRACTION,   /* cleaning, VOF and the momentum that rides with it */
+  STAGE_DENSITY,    /* density and gravity */
+  STAGE_RHEOLOGY,   /* viscosity */
+  STAGE_ADVECTION,  /* of momentum, with its projection */
+  STAGE_VISCOUS,    /* implicit viscous solve */
+  STAGE_PROJECTION, /* pressure */
+  STAGE_ADAPTATION, /* grid, fields, mesh, hierarchy */
+  STAGE_OTHER,      /* dt, checks, copies */
+  NSTAGES
+};
+
+/* How a simulation starts, which takes long on a fine grid. */
+struct two_phase_start {
+  int64_t most_leaves; /* for which there is memory; 0: no bound */
+  /* Told now and then what is being done, what part of it is done, and the
+   * leaves so far; on every rank for itself. NULL: nobody is told. */
+  void (*tell)(void *context, const char *what, double part, int64_t leaves);
+  void *context;
+};
+
+struct two_phase {
+  const struct params *params; /* borrowed */
+  struct forest *forest;       /* owned, as all below */
+  struct mesh *mesh;
+  struct hierarchy *hierarchy;
+  struct clean *clean;
+  struct fields fields;
+  struct level_raster *level_raster[PARAMS_MAX_CRITERIA]; /* of those that are
+                              functions of position; NULL until asked for */
+
+  /* State, kept over adaptation and restart */
+  struct field *c; /* volume fraction of grains */
+  struct field *tracer[PARAMS_MAX_TRACERS];
+  struct field *u[DIM]; /* velocity, m/s */
+  struct field *u_f;    /* face velocity, m/s */
+  struct field *p;      /* pressure, Pa */
+  struct field *g[DIM]; /* gravity minus pressure gradient over density */
+  struct field *viscous_g[DIM]; /* what viscosity added in the last step,
+                                 * without the friction of side walls */
+  struct field *drag;           /* of side walls (side_walls.h); NULL: none */
+
+  /* Gas that leaves through the grains (percolation.h); NULL: none may */
+  struct field *source;  /* of volume, 1/s: < 0 where gas is enclosed */
+  struct field *carrier; /* velocity on faces that carries c */
+
+  /* Properties and scratch, remade every step */
+  struct field *rho;                 /* leaves */
+  struct field *eta;                 /* leaves, mean of the faces, for output */
+  struct field *eta_f, *alpha_f;     /* face viscosity, 1/density */
+  struct field *gravity_f;           /* face gravity, balanced (properties.h) */
+  struct field *normal[DIM], *plane; /* planes of cut leaves */
+  bool planes_hold;                  /* they are those of c as it is */
+  struct skin *skin;                 /* of c, none in a single phase */
+  struct field *frozen;              /* cc of vof.h, or scratch */
+  struct field *band;                /* leaves whose momentum rides with c */
+  struct field *u_old[DIM];          /* u^n while u is being advanced */
+  struct field *u_half;              /* u_f^{n+1/2} */
+  struct field *cell[3 * DIM];       /* scratch, 2 DIM of them if theta is 1 */
+  struct field *face[DIM + 1];       /* scratch */
+
+  /* For output, on demand (closure_fields.h) */
+  struct field *shear_rate;
+  struct field *known[TWO_PHASE_MAX_KNOWN]; /* outputs of the closure */
+  int nknown;
+
+  bool closed[MESH_MAX_PATCHES]; /* patches whose normal velocity is given */
+  bool open[MESH_MAX_PATCHES];   /* the others */
+  bool pressure_set;             /* by some face of the mesh */
+
+  const struct two_phase_start *start; /* borrowed while it starts, or NULL */
+  int64_t most_leaves;                 /* there is memory for; 0: no bound */
+  double outgrown; /* leaves wanted when there was none, else 0 */
+
+  double time, dt;
+  int64_t step;
+  double travel;    /* cells the surface may have moved since adaptation */
+  double slow_time; /* that the grains have been slow (rest.h), s */
+  struct solve_stats pressure, predictor, viscous; /* of the last step, by
+                              Picard repetitions all their iterations and the
+                              worst residual */
+  double repeat_change; /* of |u_f|, m/s, in the last Picard repetition */
+  struct energy energy;
+  struct percolation percolation;
+  struct conditions conditions; /* of the checkpoint, on a restart */
+  double scale;                 /* largest speed, of the viscous tolerance */
+  double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
+
+  double seconds[NSTAGES]; /* wall-clock time on this rank since the start */
+  double mark;             /* when the stage under way began */
+};
+
+/* Initial state of the case: grid adapted to it, fields set, static
+ * pressure. Collective. Owned by the caller. */
+struct two_phase *two_phase_new(const struct params *params);
+/* The same; where the grid would outgrow the memory, `outgrown` is set and the
+ * grid stays coarser. */
+struct two_phase *two_phase_new_told(const struct params *params,
+                                     const struct two_phase_start *start);
+/* The same fields on a given forest (which it takes over), all zero, for a
+ * restart: io then fills `fields`, and the caller sets all scalars. */
+struct two_phase *two_phase_new_on(const struct params *params,
+                                   struct forest *forest);
+void two_phase_destroy(struct two_phase *sim);
+/* Forest layout of the case. */
+struct forest_layout;
+void two_phase_layout(const struct params *params,
+                      struct forest_layout *layout);
+/* Of grains and gas, which without an interface is the same. */
+void two_phase_densities(const struct two_phase *sim, double density[2]);
+/* Make mesh, hierarchy and cleaning tree anew from the forest; the fields
+ * are reset to zero. Collective. */
+void two_phase_remesh(struct two_phase *sim);
+
+#endif

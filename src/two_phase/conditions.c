@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_phase/conditions.h"
+
+#include <math.h>
+
+#include "talus/log.h"
+#include "talus/projection.h"
+#include "talus/two_phase/fractions.h"
+#include "talus/two_phase/measure.h"
+#include "talus/two_phase/state.h"
+#include "talus/two_phase/step.h"
+#include "talus/two_phase/time_step.h"
+
+/* Sums that differ by less than this part are the same: the order of their
+ * terms depends on the number of ranks. */
+#define SAME 1e-10
+
+static void measure_energy(struct two_phase *sim,
+                           struct conditions *conditions) {
+  double kinetic, potential;
+  fractions_synchronise(sim);
+  diagnostics_energy(sim, &kinetic, &potential);
+  conditions->gas = diagnostics_gas(sim);
+  fractions_desynchronise(sim);
+  conditions->energy = kinetic + potential;
+}
+
+static double measure_force(struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double *g[DIM], sum = 0;
+  field_arrays(sim->cell, g);
+  step_acceleration(sim, g);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double g2 = 0;
+    for (int d = 0; d < DIM; d++) g2 += g[d][i] * g[d][i];
+    sum += sqrt(g2) * mesh_volume(mesh, i);
+  }
+  return mesh_sum(mesh, sum);
+}
+
+/* Find the velocity of the faces on closed patches, u_f [nfaces_all], and its
+ * sum. The density is that of c. */
+static double boundary_velocity(struct two_phase *sim, double *u_f) {
+  const struct mesh *mesh = sim->mesh;
+  const struct projection projection = {
+      .mesh = mesh, .rho = sim->rho->v, .gravity_f = sim->gravity_f->v};
+  double *u[DIM], sum = 0;
+  field_arrays(sim->u, u);
+  field_fill_many(mesh, DIM, sim->u);
+  projection_face_velocity(&projection, 0, u, u_f);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int patch = mesh->face_patch[f];
+    if (patch < 0 || !sim->closed[patch]) continue;
+    sum += fabs(u_f[f]) * pow(mesh->face_h[f], DIM - 1);
+  }
+  return mesh_sum(mesh, sum);
+}
+
+void conditions_measure(struct two_phase *sim, struct conditions *conditions) {
+  measure_energy(sim, conditions);
+  conditions->force = measure_force(sim);
+  conditions->inflow = boundary_velocity(sim, sim->face[1]->v);
+}
+
+/* Bring c, and the momentum that rides with it, to `time`. */
+static void end_lag(struct two_phase *sim) {
+  fields_save(&sim->fields, sim->mesh);
+  fractions_advance(sim, 0.5 * sim->dt, time_step_rate(sim));
+  sim->dt = 0;
+}
+
+static void start_anew(struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double *given = sim->face[1]->v;
+  end_lag(sim);
+  boundary_velocity(sim, given);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int patch = mesh->face_patch[f];
+    if (patch >= 0 && sim->closed[patch]) sim->u_f->v[f] = given[f];
+  }
+  field_fill_faces(mesh, sim->u_f);
+  step_start(sim);
+}
+
+void conditions_renew(struct two_phase *sim) {
+  const struct conditions *before = &sim->conditions;
+  struct conditions now;
+  double gravity = 0, volume = 0;
+  conditions_measure(sim, &now);
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    volume += mesh_volume(sim->mesh, i);
+  }
+  for (int d = 0; d < DIM; d++) {
+    gravity = fmax(gravity, fabs(sim->params->gravity[d]));
+  }
+  const double weight = gravity * mesh_sum(sim->mesh, volume);
+  const double jump = now.energy - before->energy;
+  if (fabs(jump) > SAME * (fabs(now.energy) + fabs(before->energy))) {
+    log_info(
+        "restart with other conditions: energy changes from %.10g to %.10g",
+        before->energy, now.energy);
+    sim->energy.changed += jump;
+  }
+  if (fabs(now.gas - before->gas) > SAME * fabs(before->gas)) {
+    sim->energy.gas += now.gas - before->gas;
+  }
+  if (fabs(now.force - before->force) > SAME * (before->force + weight) ||
+      fabs(now.inflow - before->inflow) > SAME * before->inflow) {
+    log_info("restart with other forces or inflow: the flow starts anew");
+    start_anew(sim);
+  }
+}

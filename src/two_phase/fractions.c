@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_phase/fractions.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/memory.h"
+#include "talus/minmax.h"
+#include "talus/momentum.h"
+#include "talus/two_phase/state.h"
+#include "talus/two_phase/time_step.h"
+#include "talus/vof.h"
+
+/* The scratch cell field that keeps c during a sweep, or while it is
+ * synchronised. */
+enum { C_OLD = 2 * DIM - 1 };
+
+void fractions_update_planes(struct two_phase *sim) {
+  double *normal[DIM];
+  if (sim->planes_hold) return;
+  field_arrays(sim->normal, normal);
+  vof_reconstruct(sim->mesh, sim->c->v, normal, sim->plane->v);
+  sim->planes_hold = true;
+}
+
+/* Take cc dt div(u_f) out of a fraction again, to which the terms with cc
+ * (vof.h) add up over the axes where u_f has a source, 1/s; NULL: none. */
+static void remove_dilation(const struct two_phase *sim, double dt,
+                            const double *source, double *c) {
+  if (!source) return;
+  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    c[i] -= sim->frozen->v[i] * dt * source[i];
+  }
+}
+
+/* The tracer (or c) is filled, normal and plane are its own. */
+static void sweep_tracer(struct two_phase *sim, int d, double dt,
+                         const double *u_f, double *const normal[DIM],
+                         const double *plane, double *tracer) {
+  const struct mesh *mesh = sim->mesh;
+  double *flux = sim->face[0]->v;
+  vof_flux(mesh, d, dt, u_f, sim->open, tracer, normal, plane, flux);
+  vof_update(mesh, d, dt, u_f, flux, sim->frozen->v, tracer);
+}
+
+/* The planes of c are left as they are, for it may be set back. */
+static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
+                           const double *source, struct field *tracer) {
+  bool held = tracer == sim->c && sim->planes_hold;
+  vof_freeze(sim->mesh, tracer->v, sim->frozen->v);
+  for (int s = 0; s < DIM; s++, held = false) {
+    const int d = (int)((sim->step + s) % DIM);
+    double *normal[DIM], *plane = (held ? sim->plane : sim->cell[DIM])->v;
+    field_arrays(held ? sim->normal : sim->cell, normal);
+    field_fill(sim->mesh, tracer);
+    if (!held) vof_reconstruct(sim->mesh, tracer->v, normal, plane);
+    sweep_tracer(sim, d, dt, u_f, normal, plane, tracer->v);
+  }
+  remove_dilation(sim, dt, source, tracer->v);
+}
+
+/* u and c are filled. */
+static void sweep_grains(struct two_phase *sim, int d, double dt,
+                         const double *u_f) {
+  const struct mesh *mesh = sim->mesh;
+  double density[2], *u[DIM], *start[DIM], *normal[DIM];
+  double *c_old = sim->cell[C_OLD]->v;
+  struct momentum_flux flux = {.mass = sim->u_half->v};
+  two_phase_densities(sim, density);
+  field_arrays(sim->u, u), field_arrays(sim->u_old, start);
+  field_arrays(sim->normal, normal);
+  for (int e = 0; e < DIM; e++) {
+    flux.carried[e] = sim->face[1 + e]->v;
+    flux.slope[e] = sim->cell[e]->v;
+  }
+  memcpy(c_old, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  fractions_update_planes(sim);
+  sweep_tracer(sim, d, dt, u_f, normal, sim->plane->v, sim->c->v);
+  sim->planes_hold = false;
+  momentum_flux(mesh, d, dt, density, u_f, c_old, sim->face[0]->v, sim->band->v,
+                u, &flux);
+  momentum_update(mesh, d, dt, density, u_f, c_old, sim->frozen->v,
+                  sim->band->v, start, &flux, u);
+}
+
+static void log_divergence(struct two_phase *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double sum = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double net = 0;
+    for (int f = 0; f < NFACE; f++) {
+      net += (f & 1 ? 1 : -1) * sim->u_f->v[mesh->cell_face[i][f]];
+    }
+    sum += sim->frozen->v[i] * net * dt * mesh_volume(mesh, i) / mesh->h[i];
+  }
+  sim->divergence_volume += mesh_sum(mesh, sum);
+}
+
+void fractions_carry(struct two_phase *sim, double dt, const double *u_f,
+                     const double *source) {
+  const struct mesh *mesh = sim->mesh;
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    advance_tracer(sim, dt, u_f, source, sim->tracer[k]);
+  }
+  if (sim->params->single_phase) return;
+  vof_freeze(mesh, sim->c->v, sim->frozen->v);
+  for (int s = 0; s < DIM; s++) {
+    if (s > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
+    sweep_grains(sim, (int)((sim->step + s) % DIM), dt, u_f);
+  }
+  remove_dilation(sim, dt, source, sim->c->v);
+}
+
+/* Sweeps with the velocity of the step. u, c and band are filled. */
+static void sweep_fractions(struct two_phase *sim, double dt) {
+  fractions_carry(sim, dt, sim->u_f->v, NULL);
+  if (!sim->params->single_phase) log_divergence(sim, dt);
+}
+
+static void mark_band(struct two_phase *sim, int rings) {
+  if (sim->params->single_phase) return;
+  field_fill(sim->mesh, sim->c);
+  momentum_mark_band(sim->mesh, sim->c->v, rings, sim->band->v);
+}
+
+static bool are_bounded(const struct two_phase *sim) {
+  double excess = vof_excess(sim->mesh, sim->c->v);
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    excess = max2(excess, vof_excess(sim->mesh, sim->tracer[k]->v));
+  }
+  return mesh_max(sim->mesh, excess) <= VOF_EMPTY;
+}
+
+/* What the sweeps have changed. */
+static void restore(struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  field_restore(sim->c, mesh);
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    field_restore(sim->tracer[k], mesh);
+  }
+  for (int e = 0; e < DIM; e++) {
+    memcpy(sim->u[e]->v, sim->u_old[e]->v,
+           (size_t)mesh->ncells * sizeof(double));
+  }
+  sim->planes_hold = false;
+}
+
+/* Count the parts of at most `most`, up to round-off, in a Courant number. */
+static int parts_of(double courant, double most) {
+  return (int)max2(1, ceil(courant / most - 1e-9));
+}
+
+/* Sweep n times over dt / n, from the state that has been saved. u is filled.
+ */
+static void sweep_in_parts(struct two_phase *sim, double dt, int n) {
+  mark_band(sim, n);
+  for (int k = 0; k < n; k++) {
+    if (k > 0) {
+      field_fill_many(sim->mesh, DIM, sim->u);
+      field_fill(sim->mesh, sim->c);
+    }
+    sweep_fractions(sim, dt / n);
+  }
+}
+
+void fractions_advance(struct two_phase *sim, double dt, double rate) {
+  const struct mesh *mesh = sim->mesh;
+  const double divergence = sim->divergence_volume;
+  field_fill_many(mesh, DIM, sim->u);
+  for (int e = 0; e < DIM; e++) {
+    memcpy(sim->u_old[e]->v, sim->u[e]->v,
+           (size_t)mesh->ncells * sizeof(double));
+  }
+  sweep_in_parts(sim, dt, parts_of(rate * dt, 1));
+  if (rate * dt <= VOF_CFL || are_bounded(sim)) return;
+  restore(sim);
+  sim->divergence_volume = divergence;
+  sweep_in_parts(sim, dt, parts_of(rate * dt, VOF_CFL));
+}
+
+void fractions_synchronise(struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double *before = sim->cell[C_OLD]->v;
+  memcpy(before, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  if (sim->params->single_phase || sim->dt == 0) return;
+  advance_tracer(sim, 0.5 * sim->dt, sim->u_f->v, NULL, sim->c);
+  if (mesh_max(mesh, vof_excess(mesh, sim->c->v)) <= VOF_EMPTY) return;
+  const bool held = sim->planes_hold;
+  const double half = 0.5 * sim->dt;
+  const int parts = parts_of(half * time_step_rate(sim), VOF_CFL);
+  fractions_desynchronise(sim);
+  for (int k = 0; k < parts; k++, sim->planes_hold = false) {
+    advance_tracer(sim, half / parts, sim->u_f->v, NULL, sim->c);
+  }
+  sim->planes_hold = held;
+}
+
+void fractions_desynchronise(struct two_phase *sim) {
+  memcpy(sim->c->v, sim->cell[C_OLD]->v,
+         (size_t)sim->mesh->nleaves * sizeof(double));
+}
+
+void fractions_read_tracer(struct two_phase *sim, int k, double *value) {
+  struct field *tracer = sim->tracer[k];
+  const int32_t n = sim->mesh->nleaves;
+  double *before = MEM_NEW(double, (size_t)n);
+  memcpy(before, tracer->v, (size_t)n * sizeof(double));
+  if (sim->dt > 0)
+    advance_tracer(sim, 0.5 * sim->dt, sim->u_f->v, NULL, tracer);
+  memcpy(value, tracer->v, (size_t)n * sizeof(double));
+  memcpy(tracer->v, before, (size_t)n * sizeof(double));
+  mem_free(before);
+}

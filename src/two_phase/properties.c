@@ -1,0 +1,385 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_phase/properties.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "talus/minmax.h"
+#include "talus/params.h"
+#include "talus/plane.h"
+#include "talus/vof.h"
+
+/* A line this close to a surface, in leaf edges, from end to end lies half in
+ * the grains: round-off must not choose. */
+#define ALONG 1e-9
+
+static inline double unit_range(double c) { return min2(max2(c, 0), 1); }
+
+/* Of leaves, not nodes: see properties.h. */
+static inline double face_fraction(const struct mesh *mesh, const double *c,
+                                   int32_t f) {
+  const int32_t *of =
+      mesh->face_patch[f] < 0 ? mesh->face_leaf[f] : mesh->face_node[f];
+  return 0.5 * (unit_range(c[of[0]]) + unit_range(c[of[1]]));
+}
+
+void properties_density(const struct mesh *mesh, const double density[2],
+                        const double *c, const bool *closed, double *rho,
+                        double *alpha_f) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    rho[i] = density[1] + unit_range(c[i]) * (density[0] - density[1]);
+  }
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int patch = mesh->face_patch[f];
+    const double c_f = face_fraction(mesh, c, f);
+    alpha_f[f] = patch >= 0 && closed[patch]
+                     ? 0
+                     : 1 / (density[1] + c_f * (density[0] - density[1]));
+  }
+  mesh_fill_faces(mesh, 1, &alpha_f);
+}
+
+/* Level of the surface in or at leaf i: g.(x_S - Z), from its plane, or from
+ * the faces where a full leaf meets an empty one. False if there is none. */
+static bool surface_level(const struct mesh *mesh, const double gravity[DIM],
+                          const double origin[DIM], const double *c,
+                          double *const normal[DIM], const double *plane,
+                          int32_t i, double *level) {
+  double at[DIM] = {0}, n[DIM];
+  int count = 0;
+  if (vof_is_cut(c[i])) {
+    for (int d = 0; d < DIM; d++) n[d] = normal[d][i];
+    plane_centroid(n, plane[i], at);
+    count = 1;
+  } else {
+    for (int f = 0; f < NFACE; f++) {
+      const double next = c[mesh->stencil[i][stencil_face(f)]];
+      if ((next > 0.5) == (c[i] > 0.5) || vof_is_cut(next)) continue;
+      at[f >> 1] += f & 1 ? 0.5 : -0.5;
+      count++;
+    }
+  }
+  *level = 0;
+  if (count == 0) return false;
+  for (int d = 0; d < DIM; d++) {
+    *level +=
+        gravity[d] * (mesh->x[i][d] - origin[d] + mesh->h[i] * at[d] / count);
+  }
+  return true;
+}
+
+/* Leaves next to one with a level take it over: c interpolated in them, on
+ * the coarse side of a jump, feels the surface next door. */
+static void spread_level(const struct mesh *mesh,
+                         const struct balance *balance) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double level = balance->level[i], count = balance->count[i], near = 0;
+    for (int f = 0; f < NFACE; f++) { /* > 0 in children of a leaf with 1 */
+      near = max2(near, balance->count[mesh->stencil[i][stencil_face(f)]]);
+    }
+    const bool search = near > 0 && count == 0;
+    for (int f = 0; f < NFACE && search; f++) {
+      int32_t node = mesh->stencil[i][stencil_face(f)];
+      if (node >= mesh->begin_boundary) continue;
+      if (node >= mesh->begin_virtual) {
+        node = mesh->virtual_leaf[(node - mesh->begin_virtual) / NCHILD];
+      }
+      if (balance->count[node] == 0) continue;
+      level += balance->level[node];
+      count += balance->count[node];
+    }
+    balance->near_level[i] = count > 0 ? level / count : 0;
+    balance->near_count[i] = count > 0;
+  }
+}
+
+/* W and, where the level was, c, filled as p is; the level next to surfaces. */
+static void set_surface(const struct mesh *mesh, const double density[2],
+                        const struct balance *balance, const double *c,
+                        double *const normal[DIM], const double *plane) {
+  static const struct bc neumann[MESH_MAX_PATCHES];
+  const struct bc *bc[] = {neumann, neumann, neumann};
+  double *cells[] = {balance->level, balance->count};
+  double *potentials[] = {balance->weight, balance->level};
+  double *ghosts[] = {balance->near_level, balance->near_count};
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double weight = 0;
+    for (int d = 0; d < DIM; d++) {
+      weight += balance->gravity[d] * (mesh->x[i][d] - balance->origin[d]);
+    }
+    balance->weight[i] =
+        weight * (density[1] + c[i] * (density[0] - density[1]));
+    balance->count[i] = surface_level(mesh, balance->gravity, balance->origin,
+                                      c, normal, plane, i, &balance->level[i]);
+  }
+  mesh_fill(mesh, 2, cells, bc, true);
+  spread_level(mesh, balance);
+  mesh_fill_ghosts(mesh, 2, ghosts);
+  memcpy(balance->level, c, (size_t)mesh->nleaves * sizeof *c);
+  mesh_fill_potential(mesh, balance->rho, 2, potentials, bc, true);
+}
+
+void properties_gravity(const struct mesh *mesh, const double density[2],
+                        const struct balance *balance, const double *c,
+                        double *const normal[DIM], const double *plane,
+                        const double *alpha_f, double *gravity_f) {
+  const double *fraction = balance->level;
+  set_surface(mesh, density, balance, c, normal, plane);
+  for (int d = 0; d < DIM; d++) {
+    const double along = balance->along[d];
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f], *leaf = mesh->face_leaf[f];
+      if (mesh->face_patch[f] >= 0) {
+        gravity_f[f] = alpha_f[f] > 0 ? balance->gravity[d] + along : 0;
+        continue;
+      }
+      const double jump =
+          (density[0] - density[1]) * (fraction[node[1]] - fraction[node[0]]);
+      double level = 0, count = 0;
+      for (int side = 0; side < 2 && jump != 0; side++) {
+        level += balance->near_level[leaf[side]];
+        count += balance->near_count[leaf[side]];
+      }
+      const double weight = balance->weight[node[1]] -
+                            balance->weight[node[0]] -
+                            (count > 0 ? jump * level / count : 0);
+      gravity_f[f] = along + alpha_f[f] * weight / mesh->face_h[f];
+    }
+  }
+  mesh_fill_faces(mesh, 1, &gravity_f);
+}
+
+/* Where the grains are. */
+struct grains {
+  const double *density; /* of grains and gas */
+  const double *c;
+  double *const *normal; /* planes of cut leaves */
+  const double *plane;
+};
+
+/* Part of the line from the node on `side` of a face to the face that lies
+ * in the grains, by the plane of the leaf there; the node is the leaf itself
+ * or one of its children. It begins on the side of the phase with most of the
+ * leaf's mass, whose velocity the leaf has: at the surface if the node is on
+ * the other. */
+static double line_fraction(const struct mesh *mesh, int d, int32_t f, int side,
+                            const struct grains *grains) {
+  const int32_t leaf = mesh->face_leaf[f][side];
+  const int32_t node = mesh->face_node[f][side];
+  const double c = grains->c[leaf];
+  if (!vof_is_cut(c)) return unit_range(c);
+  const bool coarse = node >= mesh->begin_virtual;
+  const bool heavy = c * grains->density[0] > (1 - c) * grains->density[1];
+  double at_node = -grains->plane[leaf];
+  for (int e = 0; e < DIM && coarse; e++) {
+    const int upper = (node - mesh->begin_virtual) % NCHILD >> e & 1;
+    at_node += grains->normal[e][leaf] * (upper ? 0.25 : -0.25);
+  }
+  const double reach = (side ? -0.5 : 0.5) * (coarse ? 0.5 : 1);
+  const double at_face = at_node + reach * grains->normal[d][leaf];
+  if (max2(fabs(at_node), fabs(at_face)) < ALONG) return 0.5;
+  at_node = heavy ? min2(at_node, 0) : max2(at_node, 0);
+  if (at_node <= 0 && at_face <= 0) return 1;
+  if (at_node > 0 && at_face > 0) return 0;
+  return (at_node <= 0 ? -at_node : -at_face) / fabs(at_node - at_face);
+}
+
+/* Both halves of the line of a face; one across a boundary mirrors the
+ * other. */
+static void line_halves(const struct mesh *mesh, int d, int32_t f,
+                        const struct grains *grains, double half[2]) {
+  const int32_t *leaf = mesh->face_leaf[f];
+  for (int side = 0; side < 2; side++) {
+    if (leaf[side] >= 0) {
+      half[side] = line_fraction(mesh, d, f, side, grains);
+    }
+  }
+  if (leaf[0] < 0) half[0] = half[1];
+  if (leaf[1] < 0) half[1] = half[0];
+}
+
+/* grad[e][t] = du_e/dx_t at face f of axis d from the stencil of its owner. */
+static inline void face_gradient(const struct mesh *mesh, int d, int32_t f,
+                                 double *const u[DIM], double grad[DIM][DIM]) {
+  const int32_t *node = mesh->face_node[f];
+  const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
+  const int other =
+      stencil_face(2 * d + (node[0] == mesh->face_owner[f] ? 1 : 0));
+  const double k = 1 / mesh->face_h[f];
+  for (int e = 0; e < DIM; e++) {
+    for (int t = 0; t < DIM; t++) {
+      const int step = stencil_step(t);
+      grad[e][t] = t == d ? k * (u[e][node[1]] - u[e][node[0]])
+                          : 0.25 * k *
+                                (u[e][stencil[STENCIL_CENTRE + step]] -
+                                 u[e][stencil[STENCIL_CENTRE - step]] +
+                                 u[e][stencil[other + step]] -
+                                 u[e][stencil[other - step]]);
+    }
+  }
+}
+
+/* 2 D:D */
+static inline double shear_squared(double grad[DIM][DIM]) {
+  double sum = 0;
+  for (int e = 0; e < DIM; e++) {
+    sum += 2 * grad[e][e] * grad[e][e];
+    for (int t = e + 1; t < DIM; t++) {
+      const double shear = grad[e][t] + grad[t][e];
+      sum += shear * shear;
+    }
+  }
+  return sum;
+}
+
+/* Set 2 D:D at the faces beside the surface. */
+static void skin_shear_squared(const struct mesh *mesh, const struct skin *skin,
+                               double *const u[DIM], double *squared_f) {
+  for (int32_t k = 0; k < skin->n; k++) {
+    const struct skin_face *face = &skin->face[k];
+    const int32_t f = face->face;
+    double grad[DIM][DIM];
+    face_gradient(mesh, face->axis, f, u, grad);
+    for (int t = 0; t < DIM; t++) {
+      for (int e = 0; e < DIM && t != face->axis; e++) {
+        grad[e][t] = face->part[t] * skin_difference(mesh, face, t, u[e]) /
+                     mesh->face_h[f];
+      }
+    }
+    squared_f[f] = shear_squared(grad);
+  }
+}
+
+void properties_shear_rate(const struct mesh *mesh, const struct skin *skin,
+                           double *const u[DIM], double *shear_f) {
+#pragma GCC unroll 3 /* so that d is known in the loop over faces */
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      double grad[DIM][DIM];
+      face_gradient(mesh, d, f, u, grad);
+      shear_f[f] = shear_squared(grad);
+    }
+  }
+  if (skin) skin_shear_squared(mesh, skin, u, shear_f);
+  /* apart, several at a time: roots are slow */
+  for (int32_t f = 0; f < mesh->nfaces; f++) shear_f[f] = sqrt(shear_f[f]);
+}
+
+/* theta_f, p_f [nfaces]: part of each face's line in the grains, and the
+ * pressure at the face. */
+static void face_pressure(const struct mesh *mesh, const struct grains *grains,
+                          const double gravity[DIM], const double *p,
+                          const bool *closed, double *theta_f, double *p_f) {
+  const double *density = grains->density;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      const int patch = mesh->face_patch[f];
+      double half[2] = {0}, rho[2];
+      line_halves(mesh, d, f, grains, half);
+      for (int side = 0; side < 2; side++) {
+        rho[side] = density[1] + half[side] * (density[0] - density[1]);
+      }
+      theta_f[f] = 0.5 * (half[0] + half[1]);
+      p_f[f] = (rho[1] * p[node[0]] + rho[0] * p[node[1]]) / (rho[0] + rho[1]);
+      if (patch >= 0 && closed[patch]) {
+        const int32_t i = mesh->face_owner[f];
+        const double out = node[0] == i ? 0.5 : -0.5;
+        p_f[f] = p[i] + out * mesh->h[i] * rho[0] * gravity[d];
+      }
+    }
+  }
+}
+
+/* Faces whose line lies in both phases, a block of them. */
+enum { BLOCK = 512 };
+struct mixed {
+  int32_t n, face[BLOCK];
+  double theta[BLOCK], p[BLOCK];
+  double shear[2][BLOCK], eta[2][BLOCK]; /* of grains and gas */
+};
+
+/* Two phases in series share the stress, not the shear rate:
+ *   gamma = theta gamma_1 + (1 - theta) gamma_2,
+ *   eta_1 gamma_1 = eta_2 gamma_2,
+ *   eta = 1 / (theta/eta_1 + (1 - theta)/eta_2).
+ * Stresses grow with their rates, so gamma_1 is found by halving its range.
+ * Grains that took the rate of the whole line, most of which is the gas's,
+ * would give way too easily under a dense gas. */
+static void share_stress(double time, const struct rheology *const phase[2],
+                         const double *shear_f, struct mixed *m,
+                         double *eta_f) {
+  enum { HALVINGS = 24 };
+  double low[BLOCK] = {0}, high[BLOCK];
+  for (int32_t i = 0; i < m->n; i++) {
+    high[i] = shear_f[m->face[i]] / m->theta[i];
+  }
+  for (int j = 0; j <= HALVINGS; j++) {
+    for (int32_t i = 0; i < m->n; i++) {
+      const double theta = m->theta[i], gamma = 0.5 * (low[i] + high[i]);
+      m->shear[0][i] = gamma;
+      m->shear[1][i] = (shear_f[m->face[i]] - theta * gamma) / (1 - theta);
+    }
+    for (int k = 0; k < 2; k++) {
+      rheology_eval(phase[k], time, m->n, m->shear[k], m->p, m->eta[k]);
+    }
+    for (int32_t i = 0; i < m->n; i++) {
+      const double excess =
+          m->eta[0][i] * m->shear[0][i] - m->eta[1][i] * m->shear[1][i];
+      *(excess > 0 ? &high[i] : &low[i]) = m->shear[0][i];
+    }
+  }
+  for (int32_t i = 0; i < m->n; i++) {
+    const double theta = m->theta[i];
+    const double eta[2] = {max2(m->eta[0][i], DBL_MIN),
+                           max2(m->eta[1][i], DBL_MIN)};
+    eta_f[m->face[i]] = 1 / (theta / eta[0] + (1 - theta) / eta[1]);
+  }
+  m->n = 0;
+}
+
+/* eta_f of the grains (in) mixed with that of the gas. */
+static void mix_viscosity(const struct mesh *mesh, double time,
+                          const struct rheology *const phase[2],
+                          const double *theta_f, const double *shear_f,
+                          const double *p_f, double *eta_f) {
+  double eta_gas[BLOCK];
+  struct mixed m;
+  m.n = 0; /* the rest, which is large, need not be cleared */
+  for (int32_t begin = 0; begin < mesh->nfaces; begin += BLOCK) {
+    const int32_t n =
+        begin + BLOCK < mesh->nfaces ? BLOCK : mesh->nfaces - begin;
+    rheology_eval(phase[1], time, n, shear_f + begin, p_f + begin, eta_gas);
+    for (int32_t k = 0; k < n; k++) {
+      const int32_t f = begin + k;
+      if (theta_f[f] < PROPERTIES_GAS) {
+        eta_f[f] = eta_gas[k];
+      } else if (theta_f[f] < 1 - PROPERTIES_GAS) {
+        m.face[m.n] = f, m.theta[m.n] = theta_f[f], m.p[m.n] = p_f[f];
+        if (++m.n == BLOCK) share_stress(time, phase, shear_f, &m, eta_f);
+      }
+    }
+  }
+  share_stress(time, phase, shear_f, &m, eta_f);
+}
+
+void properties_viscosity(const struct mesh *mesh, double time,
+                          const struct phase *grains, const struct phase *gas,
+                          const double gravity[DIM], const double *c,
+                          double *const normal[DIM], const double *plane,
+                          const double *p, const bool *closed,
+                          const double *shear_f, double *const work[2],
+                          double *eta_f) {
+  double *theta_f = work[0], *p_f = work[1];
+  const double density[2] = {grains->density,
+                             gas ? gas->density : grains->density};
+  const struct grains where = {density, c, normal, plane};
+  face_pressure(mesh, &where, gravity, p, closed, theta_f, p_f);
+  rheology_eval(&grains->rheology, time, mesh->nfaces, shear_f, p_f, eta_f);
+  if (gas) {
+    const struct rheology *const phase[2] = {&grains->rheology, &gas->rheology};
+    mix_viscosity(mesh, time, phase, theta_f, shear_f, p_f, eta_f);
+  }
+  mesh_fill_faces(mesh, 1, &eta_f);
+}

@@ -1,0 +1,573 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The time step of the two-phase incompressible model: step_advance
+ * and advance_state are the table of contents of the scheme, each call one
+ * stage of it.
+ *
+ * Invariants, between steps
+ * 1. c, tracers, u, u_f, p, g are valid on leaves (u_f on all faces); ghosts
+ *    and helper nodes of cell fields are not: every stage fills what it reads.
+ *    Within a step u_old, which does not change, is filled.
+ * 2. u_f is divergence-free to round-off, by cleaning at the end of a step.
+ * 3. Where planes_hold, `normal` and `plane` are those of c.
+ */
+#include "talus/two_phase/step.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/adapt.h"
+#include "talus/advection.h"
+#include "talus/clean.h"
+#include "talus/error.h"
+#include "talus/log.h"
+#include "talus/minmax.h"
+#include "talus/poisson.h"
+#include "talus/projection.h"
+#include "talus/side_walls.h"
+#include "talus/skin.h"
+#include "talus/two_phase/fractions.h"
+#include "talus/two_phase/percolation.h"
+#include "talus/two_phase/pressure_level.h"
+#include "talus/two_phase/properties.h"
+#include "talus/two_phase/state.h"
+#include "talus/two_phase/time_step.h"
+#include "talus/two_phase/viscous_work.h"
+#include "talus/viscous.h"
+#include "talus/vof.h"
+
+/* A stalled solve passes within this factor of its tolerance, or below the
+ * second number, where round-off may be. */
+#define STALL_SLACK 10
+#define STALL_FLOOR 1e-10
+
+/* Leaves with more grains than this take their g from the last pressure. The
+ * speed of dense_square at 1e6 is then off by 1e-5; by 1e-3 with 1e-6 instead,
+ * 1.6e-2 with all leaves. */
+#define HOLDS_GRAINS 0.01
+
+/* A divergence below this part of the rates of flow is round-off. */
+#define SOLENOIDAL 1e-12
+
+/* A step that fails is repeated so often, each time with this part of dt; one
+ * that is too long for what it finds so often. */
+enum { RETRIES = 3, SHORTENINGS = 30 };
+#define RETRY_FACTOR 0.25
+
+static struct projection projection_of(struct two_phase *sim) {
+  return (struct projection){.mesh = sim->mesh,
+                             .hierarchy = sim->hierarchy,
+                             .rho = sim->rho->v,
+                             .alpha_f = sim->alpha_f->v,
+                             .gravity_f = sim->gravity_f->v,
+                             .bc = sim->p->bc,
+                             .tolerance = sim->params->tolerance_pressure,
+                             .max_iterations = sim->params->max_iterations,
+                             .rhs = sim->cell[0]->v,
+                             .flux = sim->face[0]->v};
+}
+
+/* Stage 4: density, gravity and viscosity from c^{n+1/2}, D^n, p^{n-1/2}. */
+static struct balance balance_of(const struct two_phase *sim) {
+  const struct params *params = sim->params;
+  struct balance balance = {.rho = sim->rho->v,
+                            .weight = sim->cell[0]->v,
+                            .level = sim->cell[1]->v,
+                            .count = sim->cell[2]->v,
+                            .near_level = sim->cell[3]->v,
+                            .near_count = sim->frozen->v};
+  for (int d = 0; d < DIM; d++) {
+    const bool periodic = params->boundary[2 * d].type == BOUNDARY_PERIODIC;
+    balance.gravity[d] = periodic ? 0 : params->gravity[d];
+    balance.along[d] = periodic ? params->gravity[d] : 0;
+    balance.origin[d] = params->origin[d];
+  }
+  return balance;
+}
+
+/* p at the nodes as the pressure solve sees it. The density is filled. */
+static void fill_pressure(struct two_phase *sim) {
+  const struct bc *bc = sim->p->bc;
+  mesh_fill_potential(sim->mesh, sim->rho->v, 1, &sim->p->v, &bc, false);
+}
+
+static void update_density(struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  const struct balance balance = balance_of(sim);
+  double density[2], *normal[DIM];
+  two_phase_densities(sim, density);
+  field_arrays(sim->normal, normal);
+  field_fill(mesh, sim->c);
+  fractions_update_planes(sim);
+  if (!sim->params->single_phase) {
+    skin_find(mesh, sim->c->v, density[1] / density[0], sim->skin);
+  }
+  properties_density(mesh, density, sim->c->v, sim->closed, sim->rho->v,
+                     sim->alpha_f->v);
+  field_fill(mesh, sim->rho);
+  properties_gravity(mesh, density, &balance, sim->c->v, normal, sim->plane->v,
+                     sim->alpha_f->v, sim->gravity_f->v);
+}
+
+/* Find g of the last pressure with density, gravity and boundaries as they are.
+ */
+static void find_acceleration(struct two_phase *sim, double *const g[DIM]) {
+  const struct projection projection = projection_of(sim);
+  fill_pressure(sim);
+  poisson_flux(sim->mesh, projection.alpha_f, sim->p->v, projection.flux);
+  projection_acceleration(&projection, sim->face[1]->v, g);
+}
+
+/* Give leaves that hold grains this g: what the projection then changes of g,
+ * the viscous solve has not seen. In gas that grains have just left their
+ * pressure would do far too much (dense_square), so it keeps its g. */
+static void update_acceleration(struct two_phase *sim) {
+  double *g[DIM];
+  if (sim->params->single_phase) return;
+  field_arrays(sim->cell, g);
+  find_acceleration(sim, g);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+      if (sim->c->v[i] > HOLDS_GRAINS) sim->g[e]->v[i] = g[e][i];
+    }
+  }
+}
+
+/* The velocity is filled. */
+static void update_viscosity(struct two_phase *sim,
+                             struct field *const velocity[DIM]) {
+  const struct mesh *mesh = sim->mesh;
+  const struct params *params = sim->params;
+  double *u[DIM], *normal[DIM];
+  field_arrays(velocity, u), field_arrays(sim->normal, normal);
+  fill_pressure(sim);
+  properties_shear_rate(mesh, sim->skin, u, sim->face[0]->v);
+  double *work[2] = {sim->face[1]->v, sim->face[2]->v};
+  properties_viscosity(mesh, sim->time, &params->grains,
+                       params->single_phase ? NULL : &params->gas,
+                       params->gravity, sim->c->v, normal, sim->plane->v,
+                       sim->p->v, sim->closed, sim->face[0]->v, work,
+                       sim->eta_f->v);
+}
+
+/* Make u_f solenoidal by a pressure of its own: to the tolerance by a
+ * projection over dt, then to round-off by cleaning. */
+static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
+                                          double *u_f) {
+  struct projection projection = projection_of(sim);
+  struct field *phi = sim->frozen;
+  struct bc bc[MESH_MAX_PATCHES];
+  memcpy(bc, sim->p->bc, sizeof bc);
+  for (int k = 0; k < MESH_MAX_PATCHES; k++) bc[k].value = 0;
+  projection.bc = bc;
+  memset(phi->v, 0, (size_t)sim->mesh->ncells * sizeof(double));
+  struct solve_stats stats = projection_project(&projection, dt, u_f, phi->v);
+  clean_face_velocity(sim->clean, sim->mesh, sim->open, u_f);
+  return stats;
+}
+
+/* What the predictor sees besides inertia: g, and with Crank-Nicolson what
+ * viscosity and walls did in the last step, without which this one is of first
+ * order in time. It is bounded, as an implicit solve has made it. Filled. */
+static void predictor_acceleration(struct two_phase *sim, double *g[DIM]) {
+  const bool viscous = sim->params->theta < 1;
+  const double *drag = sim->drag ? sim->drag->v : NULL;
+  struct field *const *sum = viscous ? &sim->cell[2 * DIM] : sim->g;
+  field_arrays(sum, g);
+  for (int e = 0; e < DIM && viscous; e++) {
+    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+      const double u = sim->u_old[e]->v[i];
+      g[e][i] = sim->g[e]->v[i] + sim->viscous_g[e]->v[i] -
+                (drag ? drag[i] * u / sim->rho->v[i] : 0);
+    }
+  }
+  field_fill_many(sim->mesh, DIM, sum);
+}
+
+/* Stage 5: u_f at half steps, made exactly solenoidal, carries momentum away
+ * from the interface. */
+static void advect_momentum(struct two_phase *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  double *u[DIM], *g[DIM], *out[DIM];
+  field_arrays(sim->u_old, u), field_arrays(sim->u, out);
+  struct advection_work work = {.limiter = sim->params->limiter,
+                                .volume = sim->face[0]->v};
+  for (int e = 0; e < DIM; e++) {
+    work.slope[e] = sim->cell[e]->v;
+    work.transverse[e] = sim->cell[DIM + e]->v;
+    work.flux[e] = sim->face[1 + e]->v;
+  }
+  predictor_acceleration(sim, g);
+  advection_predict(mesh, dt, u, g, sim->closed, &work, sim->u_half->v);
+  sim->predictor = make_solenoidal(sim, 0.5 * dt, sim->u_half->v);
+  advection_momentum(mesh, dt, u, g, sim->u_half->v,
+                     sim->params->single_phase ? NULL : sim->band->v, &work,
+                     out);
+}
+
+/* Stage 6: rho u* - theta dt div(2 eta D(u*)) = rho (u + dt g)
+ * + (1 - theta) dt div(2 eta D(u^n)); g then leaves u* again, the projection
+ * brings the new one. */
+static void viscous_rhs(struct two_phase *sim, double dt,
+                        double *const rhs[DIM]) {
+  const struct mesh *mesh = sim->mesh;
+  const double theta = sim->params->theta;
+  if (theta < 1) {
+    double *u[DIM];
+    field_arrays(sim->u_old, u);
+    viscous_force(mesh, sim->eta_f->v, sim->skin, u, rhs);
+  }
+  for (int e = 0; e < DIM; e++) {
+    const double *u = sim->u[e]->v, *g = sim->g[e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const double explicit_part = theta < 1 ? (1 - theta) * dt * rhs[e][i] : 0;
+      rhs[e][i] = sim->rho->v[i] * (u[i] + dt * g[i]) + explicit_part;
+    }
+  }
+}
+
+/* Largest speed, or what gravity would make of rest in this step. */
+static double velocity_scale(const struct two_phase *sim, double dt) {
+  double most = max2(1e-300, time_step_boundary_speed(sim, false));
+  for (int d = 0; d < DIM; d++) {
+    most = max2(most, dt * fabs(sim->params->gravity[d]));
+  }
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+      most = max2(most, fabs(sim->u[e]->v[i]));
+    }
+  }
+  return mesh_max(sim->mesh, most);
+}
+
+/* rho + dt drag of the side walls, in scratch. */
+static const double *mass_with_walls(struct two_phase *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  const struct params *params = sim->params;
+  double gravity = 0, *mass = sim->frozen->v;
+  struct side_walls_state state = {
+      .rho = sim->rho->v, .c = sim->c->v, .p = sim->p->v};
+  for (int e = 0; e < DIM; e++) {
+    double *u = sim->cell[e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      u[i] = sim->u[e]->v[i] + dt * (sim->g[e]->v[i] + sim->viscous_g[e]->v[i]);
+    }
+    gravity = max2(gravity, fabs(params->gravity[e]));
+    state.u[e] = u, state.u_old[e] = sim->u_old[e]->v;
+  }
+  const double creep =
+      max2(SIDE_WALLS_CREEP * sqrt(gravity * params->size), 1e-300);
+  side_walls_drag(mesh, &params->side_walls, dt, creep, &state, sim->drag->v);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    mass[i] = sim->rho->v[i] + dt * sim->drag->v[i];
+  }
+  return mass;
+}
+
+/* Of u* + dt g + dt (viscous acceleration of the last step), which less the
+ * friction of the walls is the first guess, the solve makes the new velocity
+ * and acceleration. */
+static void diffuse_momentum(struct two_phase *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  const struct params *params = sim->params;
+  double *u[DIM], *rhs[DIM];
+  const struct bc *bc[DIM];
+  field_arrays(sim->u, u);
+  const double *rho = sim->rho->v;
+  const double *mass = sim->drag ? mass_with_walls(sim, dt) : rho;
+  for (int e = 0; e < DIM; e++) {
+    rhs[e] = sim->cell[e]->v;
+    bc[e] = sim->u[e]->bc;
+  }
+  viscous_rhs(sim, dt, rhs);
+  for (int e = 0; e < DIM; e++) {
+    double *inviscid = sim->face[e]->v; /* which has room for the leaves */
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      inviscid[i] = u[e][i] + dt * sim->g[e]->v[i];
+      u[e][i] =
+          (inviscid[i] + dt * sim->viscous_g[e]->v[i]) * (rho[i] / mass[i]);
+    }
+  }
+  sim->scale = velocity_scale(sim, dt);
+  sim->viscous = viscous_solve(mesh, sim->hierarchy, mass, sim->eta_f->v,
+                               sim->skin, params->theta * dt, rhs, bc,
+                               params->tolerance_viscous * sim->scale,
+                               params->max_iterations, u);
+  for (int e = 0; e < DIM; e++) {
+    const double *inviscid = sim->face[e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const double lost = u[e][i] * (mass[i] / rho[i] - 1); /* to the walls */
+      sim->viscous_g[e]->v[i] = (u[e][i] - inviscid[i] + lost) / dt;
+      u[e][i] -= dt * sim->g[e]->v[i];
+    }
+  }
+}
+
+/* Stage 8: before repetition k, viscosity from the latest u and p; the
+ * advected velocity is set back. */
+static void repeat_properties(struct two_phase *sim, int k) {
+  const size_t bytes = (size_t)sim->mesh->nleaves * sizeof(double);
+  if (sim->params->picard == 0) return;
+  if (k > 0) {
+    field_fill_many(sim->mesh, DIM, sim->u);
+    update_viscosity(sim, sim->u);
+  }
+  for (int e = 0; e < DIM; e++) {
+    double *advected = sim->cell[DIM + e]->v;
+    memcpy(k > 0 ? sim->u[e]->v : advected, k > 0 ? advected : sim->u[e]->v,
+           bytes);
+  }
+}
+
+/* How far repetition k has moved u_f from what project has kept. */
+static void measure_repetition(struct two_phase *sim, int k) {
+  const struct mesh *mesh = sim->mesh;
+  const double *last = sim->face[DIM]->v;
+  double change = 0;
+  if (k == 0) return;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    change = max2(change, fabs(sim->u_f->v[f] - last[f]));
+  }
+  sim->repeat_change = mesh_max(mesh, change);
+  log_info("step %lld, repetition %d: velocity changes by %.3g of %.3g",
+           (long long)sim->step, k, sim->repeat_change, sim->scale);
+}
+
+/* Solves of one step: the iterations of both, and the worse of the two, so
+ * that a repetition that converges does not hide one that did not. */
+static void add_solve(struct solve_stats *last,
+                      const struct solve_stats *before) {
+  const int iterations = last->iterations + before->iterations;
+  const bool failed = last->status != SOLVE_CONVERGED;
+  if (before->status != SOLVE_CONVERGED
+          ? !failed || !(before->residual_after <= last->residual_after)
+          : !failed && before->residual_after > last->residual_after) {
+    *last = *before;
+  }
+  last->iterations = iterations;
+}
+
+static void add_wall_work(struct two_phase *sim, double dt) {
+  double *u[DIM];
+  if (!sim->drag) return;
+  field_arrays(sim->u, u);
+  sim->energy.dissipated += dt * side_walls_power(sim->mesh, sim->drag->v, u);
+}
+
+/* Room for the new u_f. The first takes that of the predictor, which has done
+ * its work, and leaves the last step's there, should this one fail (u_f->old).
+ * A repetition overwrites the new one, and keeps it to be compared. */
+static void turn_face_velocity(struct two_phase *sim, int k) {
+  double *last = sim->u_f->v;
+  if (k > 0) {
+    memcpy(sim->face[DIM]->v, last,
+           (size_t)sim->mesh->nfaces_all * sizeof(double));
+    return;
+  }
+  sim->u_f->v = sim->u_half->v;
+  sim->u_half->v = last;
+}
+
+/* Stage 7: u^{n+1}, u_f^{n+1}, p^{n+1/2}; repetition k of it. */
+static void project(struct two_phase *sim, double dt, int k) {
+  const struct mesh *mesh = sim->mesh;
+  struct projection projection = projection_of(sim);
+  double *u[DIM], *g[DIM];
+  turn_face_velocity(sim, k);
+  field_arrays(sim->u, u), field_arrays(sim->g, g);
+  field_fill_many(mesh, DIM, sim->u);
+  projection_face_velocity(&projection, dt, u, sim->u_f->v);
+  sim->pressure = projection_project(&projection, dt, sim->u_f->v, sim->p->v);
+  pressure_level_set(sim);
+  projection_acceleration(&projection, sim->face[1]->v, g);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * g[e][i];
+  }
+}
+
+/* Does the grid follow more than the surface? */
+static bool follows_velocity(const struct params *params) {
+  bool found = params->single_phase;
+  for (int k = 0; k < params->ncriteria; k++) {
+    found = found || params->criterion[k].type == CRITERION_ESTIMATE;
+  }
+  return found;
+}
+
+static void set_cell_viscosity(struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double sum = 0;
+    for (int f = 0; f < NFACE; f++) sum += sim->eta_f->v[mesh->cell_face[i][f]];
+    sim->eta->v[i] = sum / NFACE;
+  }
+}
+
+/* Stage 9: how many cells the surface, or the flow, may have moved. */
+static void add_travel(struct two_phase *sim, double dt) {
+  const struct mesh *mesh = sim->mesh;
+  const bool everywhere = follows_velocity(sim->params);
+  double travel = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (!everywhere && !vof_is_cut(sim->c->v[i])) continue;
+    for (int f = 0; f < NFACE; f++) {
+      const double u = fabs(sim->u_f->v[mesh->cell_face[i][f]]);
+      travel = max2(travel, u * dt / mesh->h[i]);
+    }
+  }
+  sim->travel += mesh_max(mesh, travel);
+}
+
+/* A solve that stalls at round-off, close to its tolerance, is good enough;
+ * one that stalls far from it is not. */
+static bool is_solved(const struct solve_stats *stats, double tolerance) {
+  return stats->status == SOLVE_CONVERGED ||
+         (stats->status == SOLVE_STALLED &&
+          stats->residual_after <= max2(STALL_SLACK * tolerance, STALL_FLOOR));
+}
+
+static bool has_failed(const struct two_phase *sim) {
+  const struct params *params = sim->params;
+  const struct solve_stats *solve[] = {&sim->pressure, &sim->predictor,
+                                       &sim->viscous};
+  static const char *const name[] = {"pressure", "predictor", "viscous"};
+  const char *wild = fields_not_finite(&sim->fields, sim->mesh);
+  bool failed = wild != NULL;
+  if (failed) {
+    log_info("step %lld: %s is not finite", (long long)sim->step, wild);
+  }
+  for (int k = 0; k < 3; k++) {
+    const double tolerance = k < 2 ? params->tolerance_pressure
+                                   : params->tolerance_viscous * sim->scale;
+    if (is_solved(solve[k], tolerance)) continue;
+    if (solve[k]->status == SOLVE_INCOMPATIBLE) {
+      log_info("step %lld: %s solve: what flows in does not flow out",
+               (long long)sim->step, name[k]);
+    }
+    log_info(
+        "step %lld: %s solve stalled after %d iterations, residual %g of "
+        "%g, tolerance %g",
+        (long long)sim->step, name[k], solve[k]->iterations,
+        solve[k]->residual_after, solve[k]->residual_before, tolerance);
+    failed = true;
+  }
+  return failed;
+}
+
+/* The time since the last call was spent on this stage. */
+static void lap(struct two_phase *sim, enum step_stage stage) {
+  const double now = MPI_Wtime();
+  sim->seconds[stage] += now - sim->mark;
+  sim->mark = now;
+}
+
+/* Stages 3 to 8: the state at `time` + dt. */
+static void advance_state(struct two_phase *sim, double dt, double rate) {
+  const double dt_c = 0.5 * (sim->dt + dt);
+  fractions_advance(sim, dt_c, rate);
+  percolation_advance(sim, dt_c), lap(sim, STAGE_FRACTION);
+  update_density(sim);
+  update_acceleration(sim), lap(sim, STAGE_DENSITY);
+  update_viscosity(sim, sim->u_old), lap(sim, STAGE_RHEOLOGY);
+  advect_momentum(sim, dt), lap(sim, STAGE_ADVECTION);
+  for (int k = 0; k <= sim->params->picard; k++) {
+    const struct solve_stats viscous = sim->viscous, pressure = sim->pressure;
+    repeat_properties(sim, k), lap(sim, STAGE_RHEOLOGY);
+    diffuse_momentum(sim, dt), lap(sim, STAGE_VISCOUS);
+    project(sim, dt, k), lap(sim, STAGE_PROJECTION);
+    if (k > 0) add_solve(&sim->viscous, &viscous);
+    if (k > 0) add_solve(&sim->pressure, &pressure);
+    measure_repetition(sim, k), lap(sim, STAGE_OTHER);
+  }
+  viscous_work_add(sim, dt);
+  add_wall_work(sim, dt);
+}
+
+/* Set back the state to that before the step; `before` has what fields_save
+ * does not. */
+static void set_back(struct two_phase *sim, const struct two_phase *before) {
+  fields_restore(&sim->fields, sim->mesh);
+  sim->planes_hold = false;
+  sim->energy = before->energy;
+  sim->divergence_volume = before->divergence_volume;
+  sim->percolation = before->percolation;
+  sim->travel = before->travel;
+}
+
+/* Take a step of at most dt_max, as short as it has to be; returns its dt, or
+ * 0, the state being that before the step. */
+static double find_step(struct two_phase *sim, double dt_max) {
+  const struct two_phase before = *sim;
+  int failures = 0;
+  fields_save(&sim->fields, sim->mesh);
+  for (int attempt = 0; attempt <= SHORTENINGS; attempt++) {
+    double rate;
+    const double dt = time_step_choose(sim, dt_max, &rate);
+    lap(sim, STAGE_OTHER);
+    advance_state(sim, dt, rate);
+    const bool failed = has_failed(sim);
+    dt_max = failed ? RETRY_FACTOR * dt : time_step_allowed(sim, dt);
+    if (dt_max >= dt) return dt;
+    set_back(sim, &before);
+    failures += failed;
+    if (failures > RETRIES) break;
+    log_info("step %lld: dt %.3g is repeated with %.3g", (long long)sim->step,
+             dt, dt_max);
+  }
+  return 0;
+}
+
+int step_advance(struct two_phase *sim, double dt_max) {
+  sim->mark = MPI_Wtime();
+  const double dt = find_step(sim, dt_max);
+  if (dt == 0) return EXIT_NUMERICAL;
+  sim->time += dt;
+  sim->dt = dt;
+  sim->step++;
+  add_travel(sim, dt);
+  set_cell_viscosity(sim), lap(sim, STAGE_OTHER);
+  if (adapt_is_due(sim)) adapt_grid(sim);
+  lap(sim, STAGE_ADAPTATION);
+  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  lap(sim, STAGE_FRACTION);
+  return EXIT_DONE;
+}
+
+/* Pressure and acceleration of the state at rest, without viscosity. */
+static struct solve_stats static_pressure(struct two_phase *sim) {
+  struct projection projection = projection_of(sim);
+  double *rest[DIM], *g[DIM], size = 0;
+  field_arrays(sim->u_old, rest), field_arrays(sim->g, g);
+  for (int d = 0; d < DIM; d++) {
+    memset(rest[d], 0, (size_t)sim->mesh->ncells * sizeof(double));
+    size = max2(size, fabs(sim->params->gravity[d]));
+  }
+  /* 1e-13 of the divergence gravity makes at a density jump, but not below
+   * the round-off of p / (rho h^2) */
+  const double cells = exp2(sim->params->level_max);
+  projection.tolerance =
+      size * cells / sim->params->size * max2(1e-13, 1e-16 * cells);
+  projection_face_velocity(&projection, 1, rest, sim->face[1]->v);
+  struct solve_stats stats =
+      projection_project(&projection, 1, sim->face[1]->v, sim->p->v);
+  pressure_level_set(sim);
+  projection_acceleration(&projection, sim->face[1]->v, g);
+  return stats;
+}
+
+void step_acceleration(struct two_phase *sim, double *const g[DIM]) {
+  update_density(sim);
+  find_acceleration(sim, g);
+}
+
+void step_start(struct two_phase *sim) {
+  sim->planes_hold = false;
+  update_density(sim);
+  const double divergence = clean_divergence(sim->mesh, sim->u_f->v);
+  if (divergence > SOLENOIDAL * time_step_rate(sim)) {
+    make_solenoidal(sim, 1 / divergence, sim->u_f->v);
+  }
+  sim->pressure = static_pressure(sim);
+  field_fill_many(sim->mesh, DIM, sim->u);
+  update_viscosity(sim, sim->u);
+  set_cell_viscosity(sim);
+}

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_phase/step_floor.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "talus/error.h"
+#include "talus/log.h"
+#include "talus/minmax.h"
+#include "talus/params.h"
+#include "talus/two_phase/state.h"
+#include "talus/two_phase/time_step.h"
+
+static const double SHORT = 1e-9; /* of the times of the case */
+/* A step that is longer by this factor than the last one recovers. */
+static const double GROWS = 1.1;
+
+static double speed_of_case(const struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  const struct function *u = sim->params->velocity;
+  double fastest = time_step_boundary_speed(sim, false);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t i = 0; i < mesh->nleaves && u[d].eval != NULL; i++) {
+      double x[3] = {0};
+      for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
+      fastest = max2(fastest, fabs(u[d].eval(u[d].context, x)));
+    }
+  }
+  return mesh_max(mesh, fastest);
+}
+
+double step_floor(const struct two_phase *sim) {
+  const struct params *params = sim->params;
+  const double speed = speed_of_case(sim);
+  double g2 = 0, time = params->stop;
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  if (g2 > 0) time = min2(time, sqrt(params->size / sqrt(g2)));
+  if (speed > 0) time = min2(time, params->size / speed);
+  return max2(SHORT * time, 0.5 * DBL_EPSILON * params->stop);
+}
+
+/* The leaf that binds dt most, over all ranks. */
+struct worst {
+  double rate; /* 1/s: how much of it passes in a second */
+  double x[3], h, value;
+};
+
+/* Take the one of the rank whose rate is largest. */
+static void share_worst(const struct mesh *mesh, struct worst *worst) {
+  struct {
+    double rate;
+    int rank;
+  } most = {worst->rate, mesh->rank};
+  MPI_CHECK(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC,
+                          mesh->comm));
+  MPI_CHECK(MPI_Bcast(worst, sizeof *worst / sizeof(double), MPI_DOUBLE,
+                      most.rank, mesh->comm));
+}
+
+static void take_worst(const struct mesh *mesh, int32_t i, double rate,
+                       double value, struct worst *worst) {
+  if (!(rate > worst->rate)) return;
+  worst->rate = rate, worst->value = value, worst->h = mesh->h[i];
+  for (int d = 0; d < DIM; d++) worst->x[d] = mesh->x[i][d];
+}
+
+/* The bounds of time_step.h, up to their factors: the fastest cell, and the
+ * grains with the largest acceleration. */
+static void find_worst(const struct two_phase *sim, struct worst *flow,
+                       struct worst *forces) {
+  const struct mesh *mesh = sim->mesh;
+  *flow = *forces = (struct worst){.rate = 0};
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double sum = 0, fastest = 0, g2 = 0;
+    for (int f = 0; f < NFACE; f++) {
+      const double u = fabs(sim->u_f->v[mesh->cell_face[i][f]]);
+      sum += 0.5 * u;
+      fastest = max2(fastest, u);
+    }
+    for (int d = 0; d < DIM; d++) g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
+    take_worst(mesh, i, sum / mesh->h[i], fastest, flow);
+    if (sim->c->v[i] > 0.5)
+      take_worst(mesh, i, sqrt(sqrt(g2) / mesh->h[i]), sqrt(g2), forces);
+  }
+  share_worst(mesh, flow);
+  share_worst(mesh, forces);
+}
+
+static void place_text(const struct worst *worst, size_t size, char *text) {
+  if (DIM == 2)
+    snprintf(text, size, "in the cell of %.3g at (%.5g, %.5g)", worst->h,
+             worst->x[0], worst->x[1]);
+  else
+    snprintf(text, size, "in the cell of %.3g at (%.5g, %.5g, %.5g)", worst->h,
+             worst->x[0], worst->x[1], worst->x[2]);
+}
+
+/* Name the cause of dt, the bound that comes nearest: the state is that after
+ * the step, which has bounds of its own. */
+static void cause_text(const struct two_phase *sim, const struct worst *flow,
+                       const struct worst *forces, size_t size, char *text) {
+  /* 0.1: the part of sqrt(h/g) that time_step.h allows */
+  const double by_flow = log(flow->rate * sim->dt / sim->params->cfl);
+  const double by_forces = log(forces->rate * sim->dt / 0.1);
+  char place[160];
+  place_text(forces, sizeof place, place);
+  if (by_flow < -2 && by_forces < -2)
+    snprintf(text, size,
+             "it was repeated ever shorter, as a solve failed (run.log says "
+             "which)");
+  else if (fabs(by_flow) <= fabs(by_forces))
+    snprintf(text, size, "what binds it is the advection (solver.cfl)");
+  else
+    snprintf(text, size,
+             "what binds it are the forces on grains that set off, whose "
+             "acceleration is %.3g %s",
+             forces->value, place);
+}
+
+static void explain(const struct two_phase *sim, double floor) {
+  struct worst flow, forces;
+  char place[160], cause[320], line[1024];
+  find_worst(sim, &flow, &forces);
+  if (base_rank() != 0) return;
+  place_text(&flow, sizeof place, place);
+  cause_text(sim, &flow, &forces, sizeof cause, cause);
+  snprintf(line, sizeof line,
+           "the run gave up after step %" PRId64
+           ", time %.6g: its dt = %.3g is below %.3g, with which it would "
+           "never end; %s; the largest speed is %.3g %s. Are the speeds and "
+           "forces of the case what they should be?",
+           sim->step, sim->time, sim->dt, floor, cause, flow.value, place);
+  fprintf(stderr, "talus: error: %s\n", line);
+  log_info("error: %s", line);
+}
+
+bool step_is_too_short(const struct two_phase *sim, double floor,
+                       const struct step_taken *taken) {
+  const double dt = sim->dt, most = min2(taken->dt_max, sim->params->dt_max);
+  const bool stands = sim->time == taken->time;
+  const bool bound_by_flow = dt < most * (1 - 1e-9);
+  const bool grows = taken->last_dt > 0 && dt >= GROWS * taken->last_dt;
+  if (!stands && !(dt < floor && bound_by_flow && !grows)) return false;
+  explain(sim, stands ? max2(floor, DBL_EPSILON * sim->time) : floor);
+  return true;
+}

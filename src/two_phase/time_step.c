@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_phase/time_step.h"
+
+#include <math.h>
+
+#include "talus/minmax.h"
+#include "talus/two_phase/state.h"
+
+/* From one step to the next dt grows by at most this factor. */
+#define DT_GROWTH 1.2
+/* dt is at most this times sqrt(h/|g|) of grains that set off. */
+#define DT_ACCELERATION 0.1
+/* A step that makes up for a last one too long is at least this part of the
+ * bound. */
+#define DT_SHRINK 0.2
+/* A step that was too long for what it has found is repeated with this part of
+ * what its acceleration allows, but not with less than the second of dt. */
+#define DT_REPEAT 0.7
+#define DT_LEAST 0.01
+
+double time_step_boundary_speed(const struct two_phase *sim, bool per_leaf) {
+  const struct mesh *mesh = sim->mesh;
+  double speed[MESH_MAX_PATCHES] = {0}, fastest = 0, most = 0;
+  for (int patch = 0; patch < MESH_MAX_PATCHES; patch++) {
+    for (int e = 0; e < DIM; e++) {
+      const struct bc *bc = &sim->u[e]->bc[patch];
+      if (bc->type != BC_DIRICHLET) continue;
+      speed[patch] = max2(speed[patch], fabs(bc->value));
+    }
+    fastest = max2(fastest, speed[patch]);
+  }
+  for (int32_t f = 0; f < mesh->nfaces && fastest > 0; f++) {
+    const int patch = mesh->face_patch[f];
+    if (patch < 0) continue;
+    most = max2(most, speed[patch] / (per_leaf ? mesh->face_h[f] : 1));
+  }
+  return most;
+}
+
+double time_step_rate(const struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double rate = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double sum = 0;
+    for (int f = 0; f < NFACE; f++) {
+      sum += fabs(sim->u_f->v[mesh->cell_face[i][f]]);
+    }
+    rate = max2(rate, 0.5 * sum / mesh->h[i]);
+  }
+  return mesh_max(mesh, rate);
+}
+
+/* Divide cfl by a rate; HUGE_VAL if nothing moves. */
+static double cfl_bound(const struct two_phase *sim, double rate) {
+  return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
+}
+
+/* A part of the dt in which grains that set off cross a cell. They are slower
+ * yet than their acceleration would make them over it, |u| < sqrt(|g| h): the
+ * viscosity is that of the last strain rate, and lags behind. */
+static double acceleration_bound(const struct two_phase *sim) {
+  const struct mesh *mesh = sim->mesh;
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double g2 = 0, u2 = 0;
+    if (!(sim->c->v[i] > 0.5)) continue;
+    for (int d = 0; d < DIM; d++) {
+      g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
+      u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
+    }
+    const double g = sqrt(g2), h = mesh->h[i];
+    if (u2 < g * h) most = max2(most, g / h);
+  }
+  most = mesh_max(mesh, most);
+  return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;
+}
+
+/* Bound dt by sqrt(h/|g|) of the finest leaves, where there is a surface. */
+static double wave_bound(const struct params *params) {
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  if (params->single_phase || g2 == 0) return HUGE_VAL;
+  return sqrt(params->size / exp2(params->level_max) / sqrt(g2));
+}
+
+double time_step_choose(const struct two_phase *sim, double dt_max,
+                        double *rate) {
+  const double boundary =
+      mesh_max(sim->mesh, time_step_boundary_speed(sim, true));
+  double dt = min2(dt_max, sim->params->dt_max);
+  dt = min2(dt, wave_bound(sim->params));
+  *rate = time_step_rate(sim);
+  dt = min2(dt, cfl_bound(sim, max2(boundary, *rate)));
+  dt = min2(dt, acceleration_bound(sim));
+  if (sim->dt > 0) {
+    const double bound = cfl_bound(sim, *rate);
+    dt = min2(dt, DT_GROWTH * sim->dt);
+    dt = min2(dt, max2(2 * bound - sim->dt, DT_SHRINK * bound));
+  }
+  return dt;
+}
+
+double time_step_allowed(const struct two_phase *sim, double dt) {
+  const double most = (2 - DT_SHRINK) * cfl_bound(sim, time_step_rate(sim));
+  /* from rest the rate grows as dt */
+  return dt <= most ? dt : dt * max2(DT_REPEAT * sqrt(most / dt), DT_LEAST);
+}
