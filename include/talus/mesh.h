@@ -23,13 +23,13 @@
  * A face belongs to the finer of its two leaves, or to the one on its lower
  * side. Face values are densities (velocity, flux per area), positive
  * towards increasing coordinate. cell_face[i][2d + side] is valid for every
- * leaf after mesh_fill_faces, so a divergence is
- *   div = sum_d (v[cell_face[i][2d+1]] - v[cell_face[i][2d]]) / h[i]
- * and what leaves one cell enters another to round-off.
+ * leaf after mesh_fill_faces, so that what leaves one cell enters another to
+ * round-off (mesh_outflow).
  */
 #ifndef TALUS_MESH_H
 #define TALUS_MESH_H
 
+#include <math.h>
 #include <mpi.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -124,10 +124,107 @@ struct mesh {
                                  of the curve; borrowed from the forest */
 };
 
+/* Geometry. The functions below alone know how much sides and volumes weigh;
+ * a length is x or h itself. With q_s the value on side s of a leaf, A the
+ * area of a side, V the volume and w = V/A,
+ *   net = sum_d (q_{2d+1} - q_{2d}),  outflow = A net,  div = outflow/V =
+ * net/w. A metric, or sides that are partly closed, multiply the values on
+ * sides in mesh_side, the volume and the width, and the means of
+ * mesh_fill_faces. */
+
 /* Volume of leaf or ghost i, m^3 (in 2D m^2). */
 static inline double mesh_volume(const struct mesh *mesh, int32_t i) {
   const double h = mesh->h[i];
   return DIM == 2 ? h * h : h * h * h;
+}
+
+/* Area of a side of leaf i, m^2 (in 2D m). */
+static inline double mesh_side_area(const struct mesh *mesh, int32_t i) {
+  const double h = mesh->h[i];
+  return DIM == 2 ? h : h * h;
+}
+
+/* Volume of leaf i over the area of a side, m. */
+static inline double mesh_width(const struct mesh *mesh, int32_t i) {
+  return mesh->h[i];
+}
+
+/* Area of face f < nfaces, m^2 (in 2D m). */
+static inline double mesh_face_area(const struct mesh *mesh, int32_t f) {
+  const double h = mesh->face_h[f];
+  return DIM == 2 ? h : h * h;
+}
+
+/* Value of a filled face array v on side s = 2d + (0 lower, 1 upper) of leaf i,
+ * weighted by the area that is open there, over A. */
+static inline double mesh_side(const struct mesh *mesh, const double *v,
+                               int32_t i, int s) {
+  return v[mesh->cell_face[i][s]];
+}
+
+/* Part of the net that leaves along axis d. */
+static inline double mesh_net_along(const struct mesh *mesh, const double *v,
+                                    int32_t i, int d) {
+  return mesh_side(mesh, v, i, 2 * d + 1) - mesh_side(mesh, v, i, 2 * d);
+}
+
+static inline double mesh_net(const struct mesh *mesh, const double *v,
+                              int32_t i) {
+  double net = 0;
+  for (int d = 0; d < DIM; d++) net += mesh_net_along(mesh, v, i, d);
+  return net;
+}
+
+static inline double mesh_outflow(const struct mesh *mesh, const double *v,
+                                  int32_t i) {
+  return mesh_net(mesh, v, i) * mesh_side_area(mesh, i);
+}
+
+static inline double mesh_divergence(const struct mesh *mesh, const double *v,
+                                     int32_t i) {
+  return mesh_net(mesh, v, i) / mesh_width(mesh, i);
+}
+
+/* Half of what crosses the sides of leaf i in either direction, over its
+ * volume: the volumes of itself that a velocity replaces per time, 1/s. */
+static inline double mesh_turnover(const struct mesh *mesh, const double *v,
+                                   int32_t i) {
+  double sum = 0;
+  for (int s = 0; s < NFACE; s++) sum += fabs(mesh_side(mesh, v, i, s));
+  return 0.5 * sum / mesh_width(mesh, i);
+}
+
+/* Mean of the face values on both sides of leaf i along axis d. */
+static inline double mesh_mean_along(const struct mesh *mesh, const double *v,
+                                     int32_t i, int d) {
+  const int32_t *face = mesh->cell_face[i];
+  return 0.5 * (v[face[2 * d]] + v[face[2 * d + 1]]);
+}
+
+/* Slope across face f < nfaces of what differs by this much between its nodes,
+ * 1/m. */
+static inline double mesh_slope(const struct mesh *mesh, int32_t f,
+                                double difference) {
+  return difference / mesh->face_h[f];
+}
+
+/* Slope across face f < nfaces of a filled cell array v, 1/m. */
+static inline double mesh_gradient(const struct mesh *mesh, const double *v,
+                                   int32_t f) {
+  const int32_t *node = mesh->face_node[f];
+  return mesh_slope(mesh, f, v[node[1]] - v[node[0]]);
+}
+
+/* Length in edges of leaf or ghost i: how many cells a front moves. */
+static inline double mesh_edges(const struct mesh *mesh, int32_t i,
+                                double length) {
+  return length / mesh->h[i];
+}
+
+/* Length in edges of face f < nfaces. */
+static inline double mesh_face_edges(const struct mesh *mesh, int32_t f,
+                                     double length) {
+  return length / mesh->face_h[f];
 }
 
 /* Flatten the forest. Collective; the forest must outlive the mesh. */

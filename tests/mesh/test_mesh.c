@@ -4,7 +4,7 @@
 #include <check.h>
 #include <stdlib.h>
 
-#include "grid.h"
+#include "faces.h"
 
 static const int kLevels[][2] = {{3, 3}, {2, 5}, {1, 4}};
 
@@ -102,17 +102,127 @@ START_TEST(fluxes_leave_one_cell_and_enter_another) {
   mesh_fill_faces(mesh, 1, &flux);
   double sum = 0, size = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double div = 0;
-    for (int d = 0; d < DIM; d++) {
-      div +=
-          flux[mesh->cell_face[i][2 * d + 1]] - flux[mesh->cell_face[i][2 * d]];
-    }
-    sum += div * mesh_volume(mesh, i) / mesh->h[i];
-    size += fabs(div) * mesh_volume(mesh, i) / mesh->h[i];
+    sum += mesh_outflow(mesh, flux, i);
+    size += fabs(mesh_outflow(mesh, flux, i));
   }
   sum = mesh_sum(mesh, sum), size = mesh_sum(mesh, size);
   ck_assert_double_le(fabs(sum), 1e-14 * size);
   mem_free(flux);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
+/* A velocity u_e = kOffset[e] + sum_d kSlope[e][d] x_d. */
+static const double kOffset[] = {0.6, -1.1, 0.9};
+static const double kSlope[3][3] = {
+    {0.8, -1.7, 0.3}, {1.9, -2.3, -0.6}, {-0.4, 0.7, 0.5}};
+
+static double component(int e, const double *x) {
+  double u = kOffset[e];
+  for (int d = 0; d < DIM; d++) u += kSlope[e][d] * x[d];
+  return u;
+}
+
+/* Set the normal component on faces, v [nfaces_all] of the caller. */
+static double *linear_velocity(const struct mesh *mesh) {
+  double *v = MEM_NEW(double, mesh->nfaces_all);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    double x[DIM];
+    face_centre(mesh, f, x);
+    v[f] = component(face_direction(mesh, f), x);
+  }
+  mesh_fill_faces(mesh, 1, &v);
+  return v;
+}
+
+/* Largest errors in leaf i of a linear velocity v: of the net along each axis,
+ * of divergence and outflow, of the means over both sides, of the turnover. */
+static void leaf_errors(const struct mesh *mesh, const double *v, int32_t i,
+                        double error[4]) {
+  const double h = mesh->h[i], volume = pow(h, DIM);
+  double div = 0, through = 0;
+  for (int d = 0; d < DIM; d++) {
+    const double u = component(d, mesh->x[i]), half = 0.5 * kSlope[d][d] * h;
+    const double net = mesh_net_along(mesh, v, i, d);
+    div += kSlope[d][d];
+    through += 0.5 * (fabs(u - half) + fabs(u + half));
+    error[0] = larger(error[0], fabs(net - kSlope[d][d] * h));
+    error[2] = larger(error[2], fabs(mesh_mean_along(mesh, v, i, d) - u));
+  }
+  error[1] = larger(error[1], h * fabs(mesh_divergence(mesh, v, i) - div));
+  error[1] = larger(error[1], fabs(mesh_outflow(mesh, v, i) - div * volume));
+  error[3] = larger(error[3], fabs(h * mesh_turnover(mesh, v, i) - through));
+}
+
+START_TEST(a_linear_velocity_has_its_divergence) {
+  for (int trees = 1; trees <= 2; trees++) {
+    struct forest *forest =
+        grid_new(MPI_COMM_WORLD, trees, false, kLevels[_i][0], kLevels[_i][1]);
+    struct mesh *mesh = mesh_new(forest);
+    double error[4] = {0}, *v = linear_velocity(mesh);
+    for (int32_t i = 0; i < mesh->nleaves; i++) leaf_errors(mesh, v, i, error);
+    for (int k = 0; k < 4; k++) {
+      /* sums of ten terms of order one */
+      ck_assert_double_le(mesh_max(mesh, error[k]), 1e-14);
+    }
+    mem_free(v);
+    mesh_destroy(mesh);
+    forest_destroy(forest);
+  }
+}
+END_TEST
+
+/* Flux of v out of the box, and the area of its boundary. */
+static double boundary_flux(const struct mesh *mesh, const double *v,
+                            double *area) {
+  double flux = 0, sum = 0;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    if (mesh->face_patch[f] < 0) continue;
+    sum += mesh_face_area(mesh, f);
+    flux +=
+        (mesh->face_leaf[f][1] < 0 ? 1 : -1) * v[f] * mesh_face_area(mesh, f);
+  }
+  *area = mesh_sum(mesh, sum);
+  return mesh_sum(mesh, flux);
+}
+
+START_TEST(leaves_lose_what_leaves_the_box) {
+  struct forest *forest =
+      grid_new(MPI_COMM_WORLD, 2, false, kLevels[_i][0], kLevels[_i][1]);
+  struct mesh *mesh = mesh_new(forest);
+  double outflow = 0, volume = 0, area, *v = linear_velocity(mesh);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    outflow += mesh_outflow(mesh, v, i);
+    volume += mesh_volume(mesh, i);
+  }
+  const double flux = boundary_flux(mesh, v, &area);
+  /* sums of hundreds of terms that add up to order one */
+  ck_assert_double_le(fabs(mesh_sum(mesh, outflow) - flux), 1e-13);
+  ck_assert_double_le(fabs(mesh_sum(mesh, volume) - 1), 1e-13);
+  ck_assert_double_le(fabs(area - NFACE), 1e-13);
+  mem_free(v);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
+START_TEST(gradients_across_faces_are_exact_for_linear_fields) {
+  struct forest *forest =
+      grid_new(MPI_COMM_WORLD, 2, false, kLevels[_i][0], kLevels[_i][1]);
+  struct mesh *mesh = mesh_new(forest);
+  const struct bc bc[MESH_MAX_PATCHES] = {{0}}, *bcs[] = {bc};
+  double error = 0, *v = MEM_NEW(double, mesh->ncells);
+  for (int32_t i = 0; i < mesh->nleaves; i++) v[i] = component(0, mesh->x[i]);
+  mesh_fill(mesh, 1, &v, bcs, false);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const double slope = kSlope[0][face_direction(mesh, f)];
+    if (mesh->face_patch[f] >= 0) continue;
+    error = larger(error, fabs(mesh_gradient(mesh, v, f) - slope));
+  }
+  /* differences of values of order one over at least 1/64 */
+  ck_assert_double_le(mesh_max(mesh, error), 1e-12);
+  mem_free(v);
   mesh_destroy(mesh);
   forest_destroy(forest);
 }
@@ -134,6 +244,9 @@ START_TEST(every_face_joins_its_neighbours) {
       if (gap < 0) gap += 1; /* across the periodic side */
       double expected = 0.5 * (mesh->h[leaf[0]] + mesh->h[leaf[1]]);
       good = good && fabs(gap - expected) < 1e-14;
+      good =
+          good && mesh_edges(mesh, owner, gap) == mesh_face_edges(mesh, f, gap);
+      good = good && mesh_edges(mesh, owner, mesh->h[owner]) == 1;
     }
   }
   ck_assert(all_ranks(good));
@@ -150,6 +263,10 @@ Suite *mesh_suite(void) {
   tcase_add_loop_test(tc, stencils_keep_linear_fields, 0, n);
   tcase_add_loop_test(tc, stencils_do_not_depend_on_ranks, 0, n);
   tcase_add_loop_test(tc, fluxes_leave_one_cell_and_enter_another, 0, n);
+  tcase_add_loop_test(tc, a_linear_velocity_has_its_divergence, 0, n);
+  tcase_add_loop_test(tc, leaves_lose_what_leaves_the_box, 0, n);
+  tcase_add_loop_test(tc, gradients_across_faces_are_exact_for_linear_fields, 0,
+                      n);
   tcase_add_loop_test(tc, every_face_joins_its_neighbours, 0, n);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
