@@ -41,7 +41,6 @@ SEES.update({model: SEES["models"] | {"models"} for model in MODELS})
 SEES["command"] = SEES["models"] | {"models", "case", "io"}
 # Until the model is met through models.h only.
 SEES["command"] |= MODELS
-SEES["grid"] |= MODELS | {"flow"}
 # src/models.c lists the models.
 LIST = "src/models.c"
 

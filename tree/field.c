@@ -15,12 +15,13 @@ static size_t field_length(const struct field *field, const struct mesh *mesh) {
 
 struct field *fields_add(struct fields *fields, const struct mesh *mesh,
                          const char *name, const char *unit, const char *title,
-                         enum field_location location, enum field_remap remap) {
+                         enum field_location location,
+                         const struct field_rule *rule) {
   CHECK(fields->n < FIELDS_MAX, "more than %d fields", FIELDS_MAX);
   CHECK(!fields_find(fields, name), "field '%s' twice", name);
   struct field *field = MEM_NEW(struct field, 1);
   field->name = name, field->unit = unit, field->title = title;
-  field->location = location, field->remap = remap;
+  field->location = location, field->rule = rule;
   field->component = -1;
   field->v = MEM_NEW(double, field_length(field, mesh));
   fields->field[fields->n++] = field;
@@ -39,7 +40,7 @@ void fields_release(struct fields *fields, bool all) {
     struct field *field = fields->field[k];
     mem_free(field->saved);
     field->saved = NULL;
-    if (!all && field->remap != REMAP_NONE) continue;
+    if (!all && field->rule) continue;
     mem_free(field->v);
     field->v = NULL;
   }

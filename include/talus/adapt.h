@@ -13,17 +13,26 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-struct two_phase;
+struct field;
+struct grid;
 
 /* Cells by which a band is widened before a leaf may be merged. */
 enum { ADAPT_HYSTERESIS = 2 };
 
-/* Has the surface moved far enough, or have enough steps passed? */
-bool adapt_is_due(const struct two_phase *sim);
-/* One round of dividing and merging; fields, mesh and solvers follow.
- * Returns true if the grid changed. Collective. */
-bool adapt_grid(struct two_phase *sim);
-/* Flags of forest_adapt into flag [nleaves]; c filled. Collective. */
-void adapt_flags(struct two_phase *sim, int8_t *flag);
+/* The fields of a model that the criteria look at. */
+struct followed {
+  struct field *c;        /* volume fraction of grains */
+  struct field *const *u; /* [DIM] velocity */
+};
+
+/* Has the surface moved `travel` cells, far enough, or have enough steps
+ * passed? */
+bool adapt_is_due(const struct grid *grid, int64_t step, double travel);
+/* Make one round of dividing and merging; fields, mesh and solvers follow.
+ * Returns whether the grid has changed. Collective. */
+bool adapt_grid(struct grid *grid, const struct followed *followed);
+/* Set the flags of forest_adapt, flag [nleaves]; c is filled. Collective. */
+void adapt_flags(struct grid *grid, const struct followed *followed,
+                 int8_t *flag);
 
 #endif

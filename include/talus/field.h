@@ -14,22 +14,15 @@
 
 enum field_location { FIELD_CELL, FIELD_FACE };
 
-/* How adaptation carries a field to new leaves:
- * AVERAGE  children take the parent's value, a parent the mean;
- * LINEAR   children lie on the parent's unlimited slopes (mean conserved);
- * VOF      children are cut by the parent's plane (volume conserved);
- * MOMENTUM a parent takes the mean weighted by density, children of a mixed
- *          cell the parent's value, elsewhere LINEAR (momentum conserved);
- * FACE     face velocity, halves of a side take its value, inner faces the
- *          mean of the two sides;
- * NONE     recomputed, not carried. */
-enum field_remap {
-  REMAP_NONE,
-  REMAP_AVERAGE,
-  REMAP_LINEAR,
-  REMAP_VOF,
-  REMAP_MOMENTUM,
-  REMAP_FACE
+struct field;
+struct remap;
+
+/* How adaptation carries a field of cells to new leaves (remap.h): the value of
+ * a new leaf, `leaf` of the map, that lies in an old one, and of one that takes
+ * the place of several. The old values are filled. */
+struct field_rule {
+  double (*divide)(const struct remap *, const struct field *, int32_t leaf);
+  double (*merge)(const struct remap *, const struct field *, int32_t leaf);
 };
 
 struct field {
@@ -37,7 +30,9 @@ struct field {
   const char *unit;
   const char *title;
   enum field_location location;
-  enum field_remap remap;
+  const struct field_rule *rule; /* NULL: made anew on a new grid */
+  const void *context;           /* of the rule, borrowed */
+  double low, high;        /* range of a checkpoint's values; 0, 0: none */
   bool output;             /* written to snapshots */
   bool restart;            /* written to checkpoints */
   int component;           /* axis if part of a vector named `name` without the
@@ -62,7 +57,8 @@ struct fields {
  * zero-Neumann. The registry owns it. */
 struct field *fields_add(struct fields *fields, const struct mesh *mesh,
                          const char *name, const char *unit, const char *title,
-                         enum field_location location, enum field_remap remap);
+                         enum field_location location,
+                         const struct field_rule *rule);
 struct field *fields_find(const struct fields *fields, const char *name);
 /* Free every array, or only those that are not carried to new leaves. */
 void fields_release(struct fields *fields, bool all);

@@ -29,7 +29,7 @@
 #include "talus/forest.h"
 
 struct params;
-struct two_phase;
+struct grid;
 
 enum { OPENINGS_DISTANCE = 4 };
 
@@ -39,19 +39,19 @@ int openings_patch(void *context, int side, const double x[3], double h,
                    struct patch_shares *shares);
 /* Find the patch of a boundary of the case that lies across an axis. */
 int openings_patch_number(int boundary, int axis);
+/* Find out which patches are open and whether a face of the mesh sets the
+ * pressure (grid.h). Collective. */
+void openings_find(struct grid *grid);
 /* Find the level that openings ask of leaf i, at most one above its own. */
-int openings_level(const struct two_phase *sim, int32_t f);
+int openings_level(const struct grid *grid, int32_t i);
 /* Give that level for a cell of this level with centre x. Pure. */
 int openings_level_at(const struct params *params, const double x[DIM],
                       int level);
 /* Are all faces as fine as openings_level asks? Collective. */
-bool openings_are_fine(const struct two_phase *sim);
-/* Adapt the grid of a restart, whose conditions may be new, until openings are
- * as fine as they are to be. Fields are carried over. Collective. */
-void openings_refine(struct two_phase *sim);
+bool openings_are_fine(const struct grid *grid);
 /* End the program by a USER_ERROR if a patch that the case's functions return
  * has no face on this grid, as when max_cells stops it from being refined.
  * Collective. */
-void openings_check(const struct two_phase *sim);
+void openings_check(const struct grid *grid);
 
 #endif

@@ -16,6 +16,9 @@
 
 struct side_map;
 
+/* Fractions of a phase below this are none, for properties and refinement. */
+#define PARAMS_GAS 1e-6
+
 enum {
   PARAMS_MAX_BOUNDARIES = 16, /* 6 sides, then patches named by the case */
   PARAMS_MAX_TRACERS = 8,
@@ -77,7 +80,7 @@ enum criterion_type {
 };
 
 /* The phase that a criterion minds: a leaf counts when it, or a leaf beside
- * it, holds more than PROPERTIES_GAS of that phase. */
+ * it, holds more than PARAMS_GAS of that phase. */
 enum criterion_phase { CRITERION_BOTH, CRITERION_GRAINS, CRITERION_GAS };
 
 struct criterion {

@@ -20,7 +20,7 @@
 
 #include <stdbool.h>
 
-#include "talus/mesh.h"
+#include "talus/field.h"
 
 /* A leaf is cut by the interface when c lies strictly between these. */
 #define VOF_EMPTY 1e-12
@@ -55,6 +55,10 @@ void vof_freeze(const struct mesh *mesh, const double *c, double *cc);
 /* The update of the sweep along d. c [nleaves] in/out. */
 void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
                 const double *flux, const double *cc, double *c);
+
+/* Carry a volume fraction to new leaves (remap.h): a divided leaf is cut by its
+ * plane, merged ones take the mean, so that volume is conserved. */
+extern const struct field_rule vof_rule;
 
 /* How far c lies out of [0, 1] in the leaves of this rank. */
 double vof_excess(const struct mesh *mesh, const double *c);

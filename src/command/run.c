@@ -132,7 +132,7 @@ static void write_row(struct run *run, const struct diagnostics *d) {
   struct series_row row = {.step = sim->step,
                            .time = sim->time,
                            .dt = sim->dt,
-                           .cells = forest_nleaves_global(sim->forest),
+                           .cells = forest_nleaves_global(sim->grid.forest),
                            .front = d->front,
                            .height = d->height,
                            .volume = d->volume,
@@ -203,7 +203,7 @@ static void write_snapshot(struct run *run) {
                                      .step = sim->step,
                                      .length_scale = run->params->length_scale,
                                      .parameters = run->parameters};
-  snapshots_write(run->snapshots, sim->mesh, &sim->fields, &heading);
+  snapshots_write(run->snapshots, sim->grid.mesh, &sim->grid.fields, &heading);
   closure_fields_release(sim);
 }
 
@@ -297,11 +297,11 @@ static void say_begin(const struct run *run) {
     log_info("%s", run->params->cover[k]);
   log_info("%s at step %" PRId64 ", time %.10g with %" PRId64 " cells",
            run->options->restart ? "restart" : "start", sim->step, sim->time,
-           forest_nleaves_global(sim->forest));
+           forest_nleaves_global(sim->grid.forest));
   run_size_text(&run->size, size);
   log_info("size: %s", size);
   progress_say(run->progress, "%s: %" PRId64 " cells on %d rank%s, to time %g",
-               run->params->name, forest_nleaves_global(sim->forest),
+               run->params->name, forest_nleaves_global(sim->grid.forest),
                base_size(), base_size() == 1 ? "" : "s", run->params->stop);
   if (!run->options->restart || run->tables) return;
   log_info("%s", alone);
@@ -383,7 +383,7 @@ static void say_timing(const struct run *run) {
   progress_say(run->progress, "  per cell and step       %11.0f ns",
                1e9 * run->seconds[TIME_STEP] / fmax(run->cell_steps, 1));
   const double memory =
-      mesh_sum(run->sim->mesh, (double)mem_peak_resident() - run->memory);
+      mesh_sum(run->sim->grid.mesh, (double)mem_peak_resident() - run->memory);
   progress_say(run->progress, "  memory per cell         %11.0f bytes",
                memory / fmax((double)run->most_cells, 1));
 }
@@ -474,7 +474,7 @@ static int advance(struct run *run, struct step_taken *taken) {
   *taken = (struct step_taken){sim->time, sim->dt, step_bound(run, event)};
   int status = step_advance(sim, taken->dt_max);
   if (same_time(run, sim->time, event)) sim->time = event;
-  const int64_t cells = forest_nleaves_global(sim->forest);
+  const int64_t cells = forest_nleaves_global(sim->grid.forest);
   run->cell_steps += (double)cells;
   if (cells > run->most_cells) run->most_cells = cells;
   lap(run, TIME_STEP, begin);
@@ -490,8 +490,8 @@ static int try_step(struct run *run) {
     say_failure(run);
     return status;
   }
-  if (run->sim->outgrown > 0) {
-    run_size_say_outgrown(&run->size, run->sim->outgrown);
+  if (run->sim->grid.outgrown > 0) {
+    run_size_say_outgrown(&run->size, run->sim->grid.outgrown);
     return EXIT_SYSTEM;
   }
   return step_is_too_short(run->sim, run->least_dt, &taken) ? EXIT_NUMERICAL
@@ -517,7 +517,7 @@ static int run_loop(struct run *run) {
     run->at_rest = rest_is_reached(run->sim);
     write_output(run);
     progress_step(run->progress, sim->step, sim->time, sim->dt,
-                  forest_nleaves_global(sim->forest));
+                  forest_nleaves_global(sim->grid.forest));
   }
 }
 

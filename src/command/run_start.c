@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/run_start.h"
+#include "talus/two_phase/start.h"
 
 #include <stddef.h>
 
@@ -21,13 +22,13 @@ static struct two_phase *start_new(const struct params *params,
                                    struct run_size *size) {
   run_size_estimate(params, size);
   run_size_check(size);
-  const struct two_phase_start start = {
+  const struct model_start start = {
       .most_leaves = run_size_most_leaves(params, size),
       .tell = tell,
       .context = progress};
   struct two_phase *sim = two_phase_new_told(params, &start);
-  if (sim->outgrown > 0) { /* the estimate was too low */
-    size->leaves = sim->outgrown;
+  if (sim->grid.outgrown > 0) { /* the estimate was too low */
+    size->leaves = sim->grid.outgrown;
     size->bytes = size->leaves * grid_size_bytes(params);
     run_size_check(size);
   }
@@ -39,9 +40,9 @@ static struct two_phase *start_again(const struct params *params,
                                      struct run_state *before,
                                      struct run_size *size) {
   struct two_phase *sim = run_state_read(checkpoint, params, before);
-  size->leaves = (double)forest_nleaves_global(sim->forest);
+  size->leaves = (double)forest_nleaves_global(sim->grid.forest);
   size->bytes = size->leaves * grid_size_bytes(params);
-  sim->most_leaves = run_size_most_leaves(params, size);
+  sim->grid.most_leaves = run_size_most_leaves(params, size);
   /* a run that ended at rest and goes on is to be slow for as long again */
   if (sim->slow_time >= params->rest_time) sim->slow_time = 0;
   return sim;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/run_state.h"
+#include "talus/two_phase/start.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -107,7 +108,8 @@ void run_state_write(const char *path, struct two_phase *sim,
   conditions_measure(sim, &sim->conditions);
   struct checkpoint_scalar list[MAX_SCALARS];
   int n = list_scalars(sim, state, &verdicts, list);
-  checkpoint_write(path, sim->mesh, &sim->fields, n, list, parameters);
+  checkpoint_write(path, sim->grid.mesh, &sim->grid.fields, n, list,
+                   parameters);
 }
 
 /* Each step, and the start, writes one snapshot at most. */
@@ -123,12 +125,12 @@ static void check_snapshots(const char *path, int64_t snapshots, int64_t step) {
 struct two_phase *run_state_read(const char *path, const struct params *params,
                                  struct run_state *state) {
   struct forest_layout layout;
-  two_phase_layout(params, &layout);
+  grid_layout(params, &layout);
   struct checkpoint *checkpoint =
       checkpoint_open(MPI_COMM_WORLD, path, &layout);
   struct forest *forest = checkpoint_forest(checkpoint, &layout);
   struct two_phase *sim = two_phase_new_on(params, forest);
-  checkpoint_read_fields(checkpoint, sim->mesh, &sim->fields);
+  checkpoint_read_fields(checkpoint, sim->grid.mesh, &sim->grid.fields);
 
   struct solve_stats *solve[NSOLVES];
   struct verdicts verdicts;
@@ -142,10 +144,10 @@ struct two_phase *run_state_read(const char *path, const struct params *params,
     solve[k]->iterations = (int)verdicts.iterations[k];
     solve[k]->status = (enum solve_status)verdicts.status[k];
   }
-  for (int k = 0; k < sim->fields.n; k++)
-    if (sim->fields.field[k]->restart &&
-        sim->fields.field[k]->location == FIELD_CELL)
-      field_fill(sim->mesh, sim->fields.field[k]);
-  openings_refine(sim);
+  for (int k = 0; k < sim->grid.fields.n; k++)
+    if (sim->grid.fields.field[k]->restart &&
+        sim->grid.fields.field[k]->location == FIELD_CELL)
+      field_fill(sim->grid.mesh, sim->grid.fields.field[k]);
+  two_phase_refine_openings(sim);
   return sim;
 }

@@ -4,8 +4,10 @@
 #include <math.h>
 
 #include "talus/error.h"
+#include "talus/forest.h"
 #include "talus/minmax.h"
 #include "talus/plane.h"
+#include "talus/remap.h"
 
 void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
                double n[DIM], double *alpha) {
@@ -105,3 +107,15 @@ double vof_excess(const struct mesh *mesh, const double *c) {
   }
   return excess;
 }
+
+/* Give the part of a new leaf that the plane of the old leaf around it cuts. */
+static double divide(const struct remap *remap, const struct field *field,
+                     int32_t leaf) {
+  double n[DIM], alpha, lo[DIM], hi[DIM];
+  const int32_t i = remap_box(remap, leaf, lo, hi);
+  if (!vof_is_cut(field->v[i])) return field->v[i];
+  vof_plane(remap->mesh, field->v, i, n, &alpha);
+  return plane_box_volume(n, alpha, lo, hi);
+}
+
+const struct field_rule vof_rule = {divide, remap_mean};

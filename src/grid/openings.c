@@ -3,13 +3,11 @@
 
 #include <math.h>
 
-#include "talus/adapt.h"
-#include "talus/clean.h"
 #include "talus/error.h"
 #include "talus/forest.h"
+#include "talus/grid.h"
 #include "talus/minmax.h"
 #include "talus/side_map.h"
-#include "talus/two_phase/state.h"
 
 /* Patches of the mesh: one per side, then one per further boundary of the
  * case and axis it lies across (slip needs to know its normal). */
@@ -137,6 +135,30 @@ static bool is_coarse(const struct params *params, int side, const double x[3],
   return is_end || near & list_types(params, true) & list_small(map);
 }
 
+static void set_open(struct grid *grid, int patch, int boundary) {
+  CHECK(patch < MESH_MAX_PATCHES, "more than %d boundary patches",
+        MESH_MAX_PATCHES);
+  const enum boundary_type type = grid->params->boundary[boundary].type;
+  grid->open[patch] = type == BOUNDARY_OUTFLOW;
+  grid->closed[patch] = !grid->open[patch];
+}
+
+void openings_find(struct grid *grid) {
+  const struct mesh *mesh = grid->mesh;
+  double open = 0;
+  for (int side = 0; side < NFACE; side++) set_open(grid, side, side);
+  for (int b = SIDES; b < grid->params->nboundaries; b++) {
+    for (int axis = 0; axis < DIM; axis++) {
+      set_open(grid, openings_patch_number(b, axis), b);
+    }
+  }
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int patch = mesh->face_patch[f];
+    if (patch >= 0 && grid->open[patch]) open = 1;
+  }
+  grid->pressure_set = mesh_max(mesh, open) > 0;
+}
+
 static bool is_divided(const struct params *params) {
   for (int side = 0; side < NFACE; side++) {
     if (params->side_map[side]) return true;
@@ -144,8 +166,9 @@ static bool is_divided(const struct params *params) {
   return false;
 }
 
-int openings_level(const struct two_phase *sim, int32_t i) {
-  return openings_level_at(sim->params, sim->mesh->x[i], sim->mesh->level[i]);
+int openings_level(const struct grid *grid, int32_t i) {
+  return openings_level_at(grid->params, grid->mesh->x[i],
+                           grid->mesh->level[i]);
 }
 
 int openings_level_at(const struct params *params, const double centre[DIM],
@@ -172,30 +195,18 @@ int openings_level_at(const struct params *params, const double centre[DIM],
   return wanted;
 }
 
-bool openings_are_fine(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+bool openings_are_fine(const struct grid *grid) {
+  const struct mesh *mesh = grid->mesh;
   double coarse = 0;
-  for (int32_t i = 0; i < mesh->nleaves && sim->params->ncriteria > 0; i++) {
-    if (mesh->level[i] < openings_level(sim, i)) coarse = 1;
+  for (int32_t i = 0; i < mesh->nleaves && grid->params->ncriteria > 0; i++) {
+    if (mesh->level[i] < openings_level(grid, i)) coarse = 1;
   }
   return mesh_max(mesh, coarse) == 0;
 }
 
-void openings_refine(struct two_phase *sim) {
-  bool changed = false;
-  for (int k = 0; k < 2 * sim->params->level_max; k++) {
-    if (openings_are_fine(sim) || !adapt_grid(sim)) break;
-    changed = true;
-  }
-  if (changed) {
-    clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
-  }
-  openings_check(sim);
-}
-
 /* Bits of the boundaries that have a face on a side of the grid. Collective. */
-static uint32_t list_on_grid(const struct two_phase *sim, int side) {
-  const struct mesh *mesh = sim->mesh;
+static uint32_t list_on_grid(const struct grid *grid, int side) {
+  const struct mesh *mesh = grid->mesh;
   uint32_t found = 0;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     double t[2];
@@ -208,12 +219,12 @@ static uint32_t list_on_grid(const struct two_phase *sim, int side) {
   return found;
 }
 
-void openings_check(const struct two_phase *sim) {
-  const struct params *params = sim->params;
+void openings_check(const struct grid *grid) {
+  const struct params *params = grid->params;
   for (int side = 0; side < NFACE; side++) {
     const struct side_map *map = params->side_map[side];
     if (!map) continue;
-    const uint32_t found = list_on_grid(sim, side) | list_types(params, false);
+    const uint32_t found = list_on_grid(grid, side) | list_types(params, false);
     const uint32_t lost = side_map_seen(map) & ~found;
     for (int b = SIDES; b < params->nboundaries; b++) {
       if (!(lost >> b & 1)) continue;
@@ -222,8 +233,8 @@ void openings_check(const struct two_phase *sim) {
           "of %lld cells, whose finest faces are %g: let adapt.opening_level "
           "be domain.level, raise adapt.max_cells or make the patch wider",
           params->boundary[b].name, side_map_covered(map)[b],
-          (long long)forest_nleaves_global(sim->forest),
-          ldexp(params->size, -sim->mesh->level_finest));
+          (long long)forest_nleaves_global(grid->forest),
+          ldexp(params->size, -grid->mesh->level_finest));
     }
   }
 }

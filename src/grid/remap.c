@@ -13,19 +13,10 @@
 
 #include "talus/error.h"
 #include "talus/forest.h"
+#include "talus/grid.h"
 #include "talus/memory.h"
-#include "talus/plane.h"
-#include "talus/two_phase/state.h"
-#include "talus/vof.h"
 
 enum { REMAP_MOST = FIELDS_MAX + NFACE + 1 };
-
-struct carrier {
-  const struct mesh *mesh; /* old */
-  const struct forest_map *map;
-  const double *c; /* volume fraction, filled */
-  double density[2];
-};
 
 static double slope_along(const struct mesh *mesh, const double *v, int32_t i,
                           int d) {
@@ -39,78 +30,57 @@ static double slope_along(const struct mesh *mesh, const double *v, int32_t i,
   return 0;
 }
 
-/* Value of a divided leaf at a child: on the parent's slopes. */
-static double linear_child(const struct carrier *carrier, const double *v,
-                           int32_t child) {
-  const struct mesh *mesh = carrier->mesh;
-  const int32_t i = carrier->map->first[child];
-  double value = v[i];
+double remap_value(const struct remap *remap, const struct field *field,
+                   int32_t leaf) {
+  return field->v[remap->map->first[leaf]];
+}
+
+double remap_on_slopes(const struct remap *remap, const struct field *field,
+                       int32_t leaf) {
+  const struct mesh *mesh = remap->mesh;
+  const int32_t i = remap->map->first[leaf];
+  double value = field->v[i];
   for (int d = 0; d < DIM; d++) {
-    const double offset =
-        (carrier->map->x[child][d] - mesh->x[i][d]) / mesh->h[i];
-    value += offset * slope_along(mesh, v, i, d);
+    const double offset = (remap->map->x[leaf][d] - mesh->x[i][d]) / mesh->h[i];
+    value += offset * slope_along(mesh, field->v, i, d);
   }
   return value;
 }
 
-/* Share of a child cut by its parent's plane. */
-static double vof_child(const struct carrier *carrier, const double *v,
-                        int32_t child) {
-  const struct mesh *mesh = carrier->mesh;
-  const int32_t i = carrier->map->first[child];
-  if (!vof_is_cut(v[i])) return v[i];
-  double n[DIM], alpha, lo[DIM], hi[DIM];
-  vof_plane(mesh, v, i, n, &alpha);
-  const double half = pow(0.5, carrier->map->delta[child] + 1);
+double remap_mean(const struct remap *remap, const struct field *field,
+                  int32_t leaf) {
+  const int32_t first = remap->map->first[leaf];
+  const int32_t count = remap->map->count[leaf];
+  double sum = 0;
+  for (int32_t i = first; i < first + count; i++) sum += field->v[i];
+  return sum / count;
+}
+
+int32_t remap_box(const struct remap *remap, int32_t leaf, double lo[DIM],
+                  double hi[DIM]) {
+  const struct mesh *mesh = remap->mesh;
+  const int32_t i = remap->map->first[leaf];
+  const double half = pow(0.5, remap->map->delta[leaf] + 1);
   for (int d = 0; d < DIM; d++) {
-    const double offset =
-        (carrier->map->x[child][d] - mesh->x[i][d]) / mesh->h[i];
+    const double offset = (remap->map->x[leaf][d] - mesh->x[i][d]) / mesh->h[i];
     lo[d] = offset - half, hi[d] = offset + half;
   }
-  return plane_box_volume(n, alpha, lo, hi);
+  return i;
 }
 
-static double merged(const struct carrier *carrier, const struct field *field,
-                     int32_t leaf) {
-  const int32_t first = carrier->map->first[leaf];
-  double sum = 0, weights = 0;
-  for (int32_t i = first; i < first + carrier->map->count[leaf]; i++) {
-    double weight = 1;
-    if (field->remap == REMAP_MOMENTUM) {
-      weight = carrier->density[1] +
-               carrier->c[i] * (carrier->density[0] - carrier->density[1]);
-    }
-    sum += weight * field->v[i];
-    weights += weight;
-  }
-  return sum / weights;
-}
+const struct field_rule remap_average = {remap_value, remap_mean};
+const struct field_rule remap_linear = {remap_on_slopes, remap_mean};
+const struct field_rule remap_faces = {NULL, NULL};
 
-static double divided(const struct carrier *carrier, const struct field *field,
-                      int32_t leaf) {
-  const int32_t i = carrier->map->first[leaf];
-  switch (field->remap) {
-    case REMAP_VOF:
-      return vof_child(carrier, field->v, leaf);
-    case REMAP_LINEAR:
-      return linear_child(carrier, field->v, leaf);
-    case REMAP_MOMENTUM:
-      return vof_is_cut(carrier->c[i]) ? field->v[i]
-                                       : linear_child(carrier, field->v, leaf);
-    default:
-      return field->v[i];
-  }
-}
-
-static double *carry_cells(const struct carrier *carrier,
+static double *carry_cells(const struct remap *remap,
                            const struct field *field) {
-  const struct forest_map *map = carrier->map;
+  const struct forest_map *map = remap->map;
   double *out = MEM_NEW(double, map->nnew);
   for (int32_t i = 0; i < map->nnew; i++) {
     if (map->count[i] > 1) {
-      out[i] = merged(carrier, field, i);
+      out[i] = field->rule->merge(remap, field, i);
     } else if (map->delta[i] > 0) {
-      out[i] = divided(carrier, field, i);
+      out[i] = field->rule->divide(remap, field, i);
     } else {
       out[i] = field->v[map->first[i]];
     }
@@ -121,10 +91,9 @@ static double *carry_cells(const struct carrier *carrier,
 /* Side f of every new leaf: the old one, the mean of the children's, or
  * interpolated between the parent's two sides, which keeps the children
  * solenoidal. */
-static double *carry_side(const struct carrier *carrier, const double *v,
-                          int f) {
-  const struct forest_map *map = carrier->map;
-  const struct mesh *mesh = carrier->mesh;
+static double *carry_side(const struct remap *remap, const double *v, int f) {
+  const struct forest_map *map = remap->map;
+  const struct mesh *mesh = remap->mesh;
   const int d = f >> 1, side = f & 1;
   double *out = MEM_NEW(double, map->nnew);
   for (int32_t i = 0; i < map->nnew; i++) {
@@ -170,41 +139,39 @@ static void sides_to_faces(const struct mesh *mesh, double *data[], double *v) {
   mesh_fill_faces(mesh, 1, &v);
 }
 
-void remap_fields(struct two_phase *sim, const struct forest_map *map) {
-  struct carrier carrier = {.mesh = sim->mesh, .map = map, .c = sim->c->v};
+void remap_fields(struct grid *grid, const struct forest_map *map) {
+  const struct remap remap = {.mesh = grid->mesh, .map = map};
   double *data[REMAP_MOST];
   int n = 0;
-  fields_release(&sim->fields, false);
-  carrier.density[0] = sim->params->grains.density;
-  carrier.density[1] = sim->params->gas.density;
-  for (int k = 0; k < sim->fields.n; k++) {
-    struct field *field = sim->fields.field[k];
-    if (field->remap == REMAP_NONE) continue;
+  fields_release(&grid->fields, false);
+  for (int k = 0; k < grid->fields.n; k++) {
+    struct field *field = grid->fields.field[k];
+    if (!field->rule) continue;
     CHECK(n + NFACE + 1 < REMAP_MOST, "too many fields");
     if (field->location == FIELD_CELL) {
-      field_fill(sim->mesh, field);
-      data[n++] = carry_cells(&carrier, field);
+      field_fill(grid->mesh, field);
+      data[n++] = carry_cells(&remap, field);
     } else {
-      field_fill_faces(sim->mesh, field);
+      field_fill_faces(grid->mesh, field);
       for (int f = 0; f < NFACE; f++) {
-        data[n++] = carry_side(&carrier, field->v, f);
+        data[n++] = carry_side(&remap, field->v, f);
       }
       data[n] = MEM_NEW(double, map->nnew);
       for (int32_t i = 0; i < map->nnew; i++) data[n][i] = map->delta[i] > 0;
       n++;
     }
   }
-  forest_partition(sim->forest, n, data);
-  two_phase_remesh(sim);
+  forest_partition(grid->forest, n, data);
+  grid_remesh(grid);
   double **next = data;
-  for (int k = 0; k < sim->fields.n; k++) {
-    struct field *field = sim->fields.field[k];
-    if (field->remap == REMAP_NONE) continue;
+  for (int k = 0; k < grid->fields.n; k++) {
+    struct field *field = grid->fields.field[k];
+    if (!field->rule) continue;
     if (field->location == FIELD_CELL) {
-      memcpy(field->v, *next, (size_t)sim->mesh->nleaves * sizeof(double));
+      memcpy(field->v, *next, (size_t)grid->mesh->nleaves * sizeof(double));
       next++;
     } else {
-      sides_to_faces(sim->mesh, next, field->v);
+      sides_to_faces(grid->mesh, next, field->v);
       next += NFACE + 1;
     }
   }

@@ -24,8 +24,8 @@ enum { PATH_LENGTH = 4096, NAME_LENGTH = 128 };
  * no longer be read. The files of format 1 had no seal. */
 enum { FORMAT = 2 };
 
-/* How far round-off may take a volume fraction out of [0, 1]. */
-static const double FRACTION_SLACK = 1e-6;
+/* How far round-off may take a value out of its range. */
+static const double RANGE_SLACK = 1e-6;
 
 struct checkpoint {
   struct hdf5_file *file;
@@ -297,22 +297,23 @@ static _Noreturn void refuse_value(struct checkpoint *checkpoint,
   MPI_CHECK(MPI_Bcast(found, 4, MPI_DOUBLE, first, mesh->comm));
   int n = snprintf(place, sizeof place, "%g, %g", found[1], found[2]);
   if (DIM == 3) snprintf(place + n, sizeof place - (size_t)n, ", %g", found[3]);
+  char range[64] = "";
+  if (field->low < field->high)
+    snprintf(range, sizeof range, " from %g to %g", field->low, field->high);
   USER_ERROR(
       "'%s' is damaged or was edited: %s (%s) = %g in the leaf at (%s), a "
       "finite number%s is needed; take another copy of it, or start afresh "
       "without --restart",
-      checkpoint->path, field->name, field->title, found[0], place,
-      field->remap == REMAP_VOF ? " from 0 to 1" : "");
+      checkpoint->path, field->name, field->title, found[0], place, range);
 }
 
 /* Refuses values v [nleaves][columns] that no run can have written. */
 static void check_values(struct checkpoint *checkpoint, const struct mesh *mesh,
                          const struct field *field, int columns,
                          const double *v) {
-  const struct range range =
-      field->remap == REMAP_VOF
-          ? (struct range){-FRACTION_SLACK, 1 + FRACTION_SLACK}
-          : (struct range){-DBL_MAX, DBL_MAX};
+  const bool bounded = field->low < field->high;
+  const struct range range = {bounded ? field->low - RANGE_SLACK : -DBL_MAX,
+                              bounded ? field->high + RANGE_SLACK : DBL_MAX};
   const int64_t n = (int64_t)mesh->nleaves * columns;
   int64_t k = 0;
   while (k < n && is_within(range, v[k])) k++;

@@ -41,7 +41,7 @@ static double leaf_shear_squared(const struct mesh *mesh, const double *c,
 
 /* The shear rate of all leaves, [nleaves]. */
 static void set_shear_rate(const struct two_phase *sim, double *rate) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *u[DIM];
   for (int e = 0; e < DIM; e++) u[e] = sim->u[e]->v;
   field_fill_many(mesh, DIM, sim->u);
@@ -53,7 +53,7 @@ static void set_shear_rate(const struct two_phase *sim, double *rate) {
 }
 
 double closure_fields_shear_rate(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double sum[2] = {0}, *rate = MEM_NEW(double, mesh->nleaves);
   set_shear_rate(sim, rate);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -74,7 +74,7 @@ static double *provide(struct field *field, int32_t n) {
 
 void closure_fields_update(const struct two_phase *sim) {
   const struct rheology *grains = &sim->params->grains.rheology;
-  const int32_t n = sim->mesh->nleaves;
+  const int32_t n = sim->grid.mesh->nleaves;
   double *shear_rate = provide(sim->shear_rate, n);
   set_shear_rate(sim, shear_rate);
   for (int k = 0; k < sim->nknown; k++) {

@@ -26,7 +26,7 @@ static void measure_energy(struct two_phase *sim,
 }
 
 static double measure_force(struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *g[DIM], sum = 0;
   field_arrays(sim->cell, g);
   step_acceleration(sim, g);
@@ -41,7 +41,7 @@ static double measure_force(struct two_phase *sim) {
 /* Find the velocity of the faces on closed patches, u_f [nfaces_all], and its
  * sum. The density is that of c. */
 static double boundary_velocity(struct two_phase *sim, double *u_f) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const struct projection projection = {
       .mesh = mesh, .rho = sim->rho->v, .gravity_f = sim->gravity_f->v};
   double *u[DIM], sum = 0;
@@ -50,7 +50,7 @@ static double boundary_velocity(struct two_phase *sim, double *u_f) {
   projection_face_velocity(&projection, 0, u, u_f);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
-    if (patch < 0 || !sim->closed[patch]) continue;
+    if (patch < 0 || !sim->grid.closed[patch]) continue;
     sum += fabs(u_f[f]) * pow(mesh->face_h[f], DIM - 1);
   }
   return mesh_sum(mesh, sum);
@@ -64,19 +64,19 @@ void conditions_measure(struct two_phase *sim, struct conditions *conditions) {
 
 /* Bring c, and the momentum that rides with it, to `time`. */
 static void end_lag(struct two_phase *sim) {
-  fields_save(&sim->fields, sim->mesh);
+  fields_save(&sim->grid.fields, sim->grid.mesh);
   fractions_advance(sim, 0.5 * sim->dt, time_step_rate(sim));
   sim->dt = 0;
 }
 
 static void start_anew(struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *given = sim->face[1]->v;
   end_lag(sim);
   boundary_velocity(sim, given);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
-    if (patch >= 0 && sim->closed[patch]) sim->u_f->v[f] = given[f];
+    if (patch >= 0 && sim->grid.closed[patch]) sim->u_f->v[f] = given[f];
   }
   field_fill_faces(mesh, sim->u_f);
   step_start(sim);
@@ -87,13 +87,13 @@ void conditions_renew(struct two_phase *sim) {
   struct conditions now;
   double gravity = 0, volume = 0;
   conditions_measure(sim, &now);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    volume += mesh_volume(sim->mesh, i);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    volume += mesh_volume(sim->grid.mesh, i);
   }
   for (int d = 0; d < DIM; d++) {
     gravity = fmax(gravity, fabs(sim->params->gravity[d]));
   }
-  const double weight = gravity * mesh_sum(sim->mesh, volume);
+  const double weight = gravity * mesh_sum(sim->grid.mesh, volume);
   const double jump = now.energy - before->energy;
   if (fabs(jump) > SAME * (fabs(now.energy) + fabs(before->energy))) {
     log_info(

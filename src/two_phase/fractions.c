@@ -19,7 +19,7 @@ void fractions_update_planes(struct two_phase *sim) {
   double *normal[DIM];
   if (sim->planes_hold) return;
   field_arrays(sim->normal, normal);
-  vof_reconstruct(sim->mesh, sim->c->v, normal, sim->plane->v);
+  vof_reconstruct(sim->grid.mesh, sim->c->v, normal, sim->plane->v);
   sim->planes_hold = true;
 }
 
@@ -28,7 +28,7 @@ void fractions_update_planes(struct two_phase *sim) {
 static void remove_dilation(const struct two_phase *sim, double dt,
                             const double *source, double *c) {
   if (!source) return;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     c[i] -= sim->frozen->v[i] * dt * source[i];
   }
 }
@@ -37,9 +37,9 @@ static void remove_dilation(const struct two_phase *sim, double dt,
 static void sweep_tracer(struct two_phase *sim, int d, double dt,
                          const double *u_f, double *const normal[DIM],
                          const double *plane, double *tracer) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *flux = sim->face[0]->v;
-  vof_flux(mesh, d, dt, u_f, sim->open, tracer, normal, plane, flux);
+  vof_flux(mesh, d, dt, u_f, sim->grid.open, tracer, normal, plane, flux);
   vof_update(mesh, d, dt, u_f, flux, sim->frozen->v, tracer);
 }
 
@@ -47,13 +47,13 @@ static void sweep_tracer(struct two_phase *sim, int d, double dt,
 static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
                            const double *source, struct field *tracer) {
   bool held = tracer == sim->c && sim->planes_hold;
-  vof_freeze(sim->mesh, tracer->v, sim->frozen->v);
+  vof_freeze(sim->grid.mesh, tracer->v, sim->frozen->v);
   for (int s = 0; s < DIM; s++, held = false) {
     const int d = (int)((sim->step + s) % DIM);
     double *normal[DIM], *plane = (held ? sim->plane : sim->cell[DIM])->v;
     field_arrays(held ? sim->normal : sim->cell, normal);
-    field_fill(sim->mesh, tracer);
-    if (!held) vof_reconstruct(sim->mesh, tracer->v, normal, plane);
+    field_fill(sim->grid.mesh, tracer);
+    if (!held) vof_reconstruct(sim->grid.mesh, tracer->v, normal, plane);
     sweep_tracer(sim, d, dt, u_f, normal, plane, tracer->v);
   }
   remove_dilation(sim, dt, source, tracer->v);
@@ -62,7 +62,7 @@ static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
 /* u and c are filled. */
 static void sweep_grains(struct two_phase *sim, int d, double dt,
                          const double *u_f) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double density[2], *u[DIM], *start[DIM], *normal[DIM];
   double *c_old = sim->cell[C_OLD]->v;
   struct momentum_flux flux = {.mass = sim->u_half->v};
@@ -84,7 +84,7 @@ static void sweep_grains(struct two_phase *sim, int d, double dt,
 }
 
 static void log_divergence(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double sum = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double net = 0;
@@ -98,7 +98,7 @@ static void log_divergence(struct two_phase *sim, double dt) {
 
 void fractions_carry(struct two_phase *sim, double dt, const double *u_f,
                      const double *source) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   for (int k = 0; k < sim->params->ntracers; k++) {
     advance_tracer(sim, dt, u_f, source, sim->tracer[k]);
   }
@@ -119,21 +119,21 @@ static void sweep_fractions(struct two_phase *sim, double dt) {
 
 static void mark_band(struct two_phase *sim, int rings) {
   if (sim->params->single_phase) return;
-  field_fill(sim->mesh, sim->c);
-  momentum_mark_band(sim->mesh, sim->c->v, rings, sim->band->v);
+  field_fill(sim->grid.mesh, sim->c);
+  momentum_mark_band(sim->grid.mesh, sim->c->v, rings, sim->band->v);
 }
 
 static bool are_bounded(const struct two_phase *sim) {
-  double excess = vof_excess(sim->mesh, sim->c->v);
+  double excess = vof_excess(sim->grid.mesh, sim->c->v);
   for (int k = 0; k < sim->params->ntracers; k++) {
-    excess = max2(excess, vof_excess(sim->mesh, sim->tracer[k]->v));
+    excess = max2(excess, vof_excess(sim->grid.mesh, sim->tracer[k]->v));
   }
-  return mesh_max(sim->mesh, excess) <= VOF_EMPTY;
+  return mesh_max(sim->grid.mesh, excess) <= VOF_EMPTY;
 }
 
 /* What the sweeps have changed. */
 static void restore(struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   field_restore(sim->c, mesh);
   for (int k = 0; k < sim->params->ntracers; k++) {
     field_restore(sim->tracer[k], mesh);
@@ -156,15 +156,15 @@ static void sweep_in_parts(struct two_phase *sim, double dt, int n) {
   mark_band(sim, n);
   for (int k = 0; k < n; k++) {
     if (k > 0) {
-      field_fill_many(sim->mesh, DIM, sim->u);
-      field_fill(sim->mesh, sim->c);
+      field_fill_many(sim->grid.mesh, DIM, sim->u);
+      field_fill(sim->grid.mesh, sim->c);
     }
     sweep_fractions(sim, dt / n);
   }
 }
 
 void fractions_advance(struct two_phase *sim, double dt, double rate) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double divergence = sim->divergence_volume;
   field_fill_many(mesh, DIM, sim->u);
   for (int e = 0; e < DIM; e++) {
@@ -179,7 +179,7 @@ void fractions_advance(struct two_phase *sim, double dt, double rate) {
 }
 
 void fractions_synchronise(struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *before = sim->cell[C_OLD]->v;
   memcpy(before, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
   if (sim->params->single_phase || sim->dt == 0) return;
@@ -197,12 +197,12 @@ void fractions_synchronise(struct two_phase *sim) {
 
 void fractions_desynchronise(struct two_phase *sim) {
   memcpy(sim->c->v, sim->cell[C_OLD]->v,
-         (size_t)sim->mesh->nleaves * sizeof(double));
+         (size_t)sim->grid.mesh->nleaves * sizeof(double));
 }
 
 void fractions_read_tracer(struct two_phase *sim, int k, double *value) {
   struct field *tracer = sim->tracer[k];
-  const int32_t n = sim->mesh->nleaves;
+  const int32_t n = sim->grid.mesh->nleaves;
   double *before = MEM_NEW(double, (size_t)n);
   memcpy(before, tracer->v, (size_t)n * sizeof(double));
   if (sim->dt > 0)

@@ -71,7 +71,7 @@ static double leaf_potential(const struct mesh *mesh, const double *c,
 
 static void measure_sums(const struct two_phase *sim, const double *c,
                          struct diagnostics *diagnostics) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double density[2];
   struct sum volume = {0, 0}, kinetic = {0, 0}, potential = {0, 0};
   struct sum gas = {0, 0};
@@ -101,7 +101,7 @@ static void measure_sums(const struct two_phase *sim, const double *c,
 
 double diagnostics_gas(const struct two_phase *sim) {
   struct diagnostics diagnostics;
-  field_fill(sim->mesh, sim->c);
+  field_fill(sim->grid.mesh, sim->c);
   measure_sums(sim, sim->c->v, &diagnostics);
   return diagnostics.gas;
 }
@@ -109,7 +109,7 @@ double diagnostics_gas(const struct two_phase *sim) {
 void diagnostics_energy(const struct two_phase *sim, double *kinetic,
                         double *potential) {
   struct diagnostics diagnostics;
-  field_fill(sim->mesh, sim->c);
+  field_fill(sim->grid.mesh, sim->c);
   measure_sums(sim, sim->c->v, &diagnostics);
   *kinetic = diagnostics.kinetic;
   *potential = diagnostics.potential;
@@ -117,7 +117,7 @@ void diagnostics_energy(const struct two_phase *sim, double *kinetic,
 
 void diagnostics_measure(const struct two_phase *sim,
                          struct diagnostics *diagnostics) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double *c = sim->c->v;
   bool *heap = MEM_NEW(bool, (size_t)mesh->nleaves);
   *diagnostics = (struct diagnostics){.heap = heap};
@@ -132,7 +132,7 @@ void diagnostics_measure(const struct two_phase *sim,
 
 void diagnostics_measure_layers(struct two_phase *sim,
                                 struct diagnostics *diagnostics) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double *c = sim->c->v;
   double *part = MEM_NEW(double, (size_t)mesh->nleaves);
   for (int k = 0; k < sim->params->ntracers; k++) {

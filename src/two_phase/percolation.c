@@ -32,7 +32,7 @@ static double gravity_potential(const struct two_phase *sim, int32_t i) {
   double sum = 0;
   for (int d = 0; d < DIM; d++) {
     if (params->boundary[2 * d].type == BOUNDARY_PERIODIC) continue;
-    sum += params->gravity[d] * sim->mesh->x[i][d];
+    sum += params->gravity[d] * sim->grid.mesh->x[i][d];
   }
   return sum;
 }
@@ -43,11 +43,11 @@ static double reduced_pressure(const struct two_phase *sim, int32_t i) {
 }
 
 static bool is_at_opening(const struct two_phase *sim, int32_t i) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   for (int f = 0; f < NFACE; f++) {
     const int32_t face = mesh->cell_face[i][f];
     const int patch = face < mesh->nfaces ? mesh->face_patch[face] : -1;
-    if (patch >= 0 && sim->open[patch]) return true;
+    if (patch >= 0 && sim->grid.open[patch]) return true;
   }
   return false;
 }
@@ -57,7 +57,7 @@ enum { SET_OPEN, SET_VOLUME, SET_PRESSURE, SET_SIZE };
 
 static void measure_sets(const struct two_phase *sim, const int32_t *set, int n,
                          double (*sum)[SET_SIZE]) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     if (set[i] < 0) continue;
     const double volume = mesh_volume(mesh, i);
@@ -91,7 +91,7 @@ static void choose_free(int n, double (*sum)[SET_SIZE], bool *is_free) {
 /* Set solid [ncells], filled, to c, and to 1 in leaves of gas that is not
  * free; remember whether there are any. */
 static void fill_pockets(struct two_phase *sim, double *solid) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const struct bc *bc[] = {sim->c->bc};
   double *pure = sim->source->v;
   int32_t *set = MEM_NEW(int32_t, (size_t)mesh->nleaves);
@@ -123,7 +123,7 @@ static bool find_reach(const struct two_phase *sim, const double *solid,
                        double *reach) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[] = {neumann};
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double others = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double least = 1;
@@ -144,7 +144,7 @@ static bool find_reach(const struct two_phase *sim, const double *solid,
 
 static bool is_enclosed(const struct two_phase *sim, const double *solid,
                         const double *reach, int32_t i) {
-  const int32_t *stencil = sim->mesh->stencil[i];
+  const int32_t *stencil = sim->grid.mesh->stencil[i];
   double most = 0;
   if (!(sim->c->v[i] < 1 - VOF_EMPTY) || reach[i] > 0) return false;
   for (int f = 0; f < NFACE; f++) {
@@ -161,7 +161,7 @@ static bool is_enclosed(const struct two_phase *sim, const double *solid,
 static double speed_around(const struct two_phase *sim, int32_t i) {
   double most = 0;
   for (int s = 0; s < NSTENCIL; s++) {
-    const int32_t node = sim->mesh->stencil[i][s];
+    const int32_t node = sim->grid.mesh->stencil[i][s];
     double u2 = 0;
     if (!(sim->c->v[node] > 0.5)) continue;
     for (int e = 0; e < DIM; e++) u2 += sim->u[e]->v[node] * sim->u[e]->v[node];
@@ -177,7 +177,7 @@ struct free_gas {
 
 static struct free_gas find_free_gas(const struct two_phase *sim,
                                      const double *solid) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double sum[2] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     if (!(solid[i] < 0.5)) continue;
@@ -195,7 +195,7 @@ static struct free_gas find_free_gas(const struct two_phase *sim,
 static double set_sinks(const struct two_phase *sim, double dt,
                         const double *solid, const double *reach,
                         double pressure, double *q) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double most = 0, gravity = 0;
   for (int d = 0; d < DIM; d++) {
     gravity = max2(gravity, fabs(sim->params->gravity[d]));
@@ -237,25 +237,25 @@ static void balance_sinks(const struct mesh *mesh, const double *c,
 /* w = grad psi with div w about q; psi [ncells] scratch. */
 static void solve_velocity(struct two_phase *sim, double most, double *psi,
                            double *w) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *alpha = sim->alpha_f->v;
   struct bc bc[MESH_MAX_PATCHES];
   memcpy(bc, sim->p->bc, sizeof bc);
   for (int k = 0; k < MESH_MAX_PATCHES; k++) bc[k].value = 0;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
-    alpha[f] = !(patch >= 0 && sim->closed[patch]);
+    alpha[f] = !(patch >= 0 && sim->grid.closed[patch]);
   }
   mesh_fill_faces(mesh, 1, &alpha);
   memset(psi, 0, (size_t)mesh->ncells * sizeof *psi);
-  poisson_solve(mesh, sim->hierarchy, alpha, NULL, sim->source->v, bc,
+  poisson_solve(mesh, sim->grid.hierarchy, alpha, NULL, sim->source->v, bc,
                 TOLERANCE * most, sim->params->max_iterations, psi);
   poisson_flux(mesh, alpha, psi, w);
 }
 
 /* Bind what a leaf gives by the gas that w leaves in it. */
 static void limit_sinks(const struct two_phase *sim, double dt, double *q) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double *w = sim->carrier->v;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double out = 0;
@@ -271,7 +271,7 @@ static void limit_sinks(const struct two_phase *sim, double dt, double *q) {
 /* Add the volume and the speed of what passes, and how far it moves the
  * surface. */
 static void add_passage(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double *q = sim->source->v, *w = sim->carrier->v;
   double sum[2] = {0}, travel = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -293,14 +293,15 @@ static void add_passage(struct two_phase *sim, double dt) {
 /* Potential energy of the grains of this rank, by the centres of leaves. */
 static double potential(const struct two_phase *sim) {
   double sum = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    sum -= sim->c->v[i] * mesh_volume(sim->mesh, i) * gravity_potential(sim, i);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    sum -= sim->c->v[i] * mesh_volume(sim->grid.mesh, i) *
+           gravity_potential(sim, i);
   }
   return sim->params->grains.density * sum;
 }
 
 void percolation_advance(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const bool search =
       sim->step % PERCOLATION_EVERY == 0 || sim->percolation.pockets > 0;
   const bool thorough = sim->step % PERCOLATION_EVERY == 0;
@@ -312,17 +313,17 @@ void percolation_advance(struct two_phase *sim, double dt) {
   sim->planes_hold = false;
   if (!find_reach(sim, solid, reach)) return;
   const struct free_gas gas = find_free_gas(sim, solid);
-  if (gas.volume == 0 && !sim->pressure_set) return;
+  if (gas.volume == 0 && !sim->grid.pressure_set) return;
   const double most = set_sinks(sim, dt, solid, reach, gas.pressure, q);
   if (most < (thorough ? TRACE : LEAST)) return;
   balance_sinks(mesh, sim->c->v, solid, q);
   solve_velocity(sim, most / dt, reach, w);
-  clean_to_source(sim->clean, mesh, sim->open, q, w);
+  clean_to_source(sim->grid.clean, mesh, sim->grid.open, q, w);
   enum { ROUNDS = 3 };
   for (int k = 0; k < ROUNDS; k++) {
     limit_sinks(sim, dt, q);
     balance_sinks(mesh, sim->c->v, solid, q);
-    clean_to_source(sim->clean, mesh, sim->open, q, w);
+    clean_to_source(sim->grid.clean, mesh, sim->grid.open, q, w);
   }
   add_passage(sim, dt);
   const double energy = potential(sim);

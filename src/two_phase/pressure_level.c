@@ -21,7 +21,7 @@ static struct mean mean_of(const struct mesh *mesh, double sum, double volume) {
 }
 
 static double mean_over_box(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double sum = 0, volume = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     sum += sim->p->v[i] * mesh_volume(mesh, i);
@@ -43,12 +43,12 @@ static double weight_above(const struct params *params, const double x[DIM]) {
 }
 
 static double mean_over_gas(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double sum = 0, volume = 0, all_sum = 0, all_volume = 0, box = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double gas = (1 - sim->c->v[i]) * mesh_volume(mesh, i);
     const double p = sim->p->v[i] - weight_above(sim->params, mesh->x[i]);
-    const bool pure = sim->c->v[i] < PROPERTIES_GAS;
+    const bool pure = sim->c->v[i] < PARAMS_GAS;
     sum += pure ? gas * p : 0;
     volume += pure ? gas : 0;
     all_sum += gas * p;
@@ -71,7 +71,7 @@ static double mean_over_gas(const struct two_phase *sim) {
  * exact if p is linear. p filled. */
 static double extrapolate(const struct two_phase *sim, int32_t i,
                           const double x[DIM]) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double *p = sim->p->v;
   double value = p[i];
   for (int d = 0; d < DIM; d++) {
@@ -90,7 +90,7 @@ static double extrapolate(const struct two_phase *sim, int32_t i,
 
 /* The mean of what the leaves that touch the point say. */
 static double value_at_point(struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double *x = sim->params->pressure_point;
   double sum = 0, count = 0;
   field_fill(mesh, sim->p);
@@ -111,7 +111,7 @@ static double value_at_point(struct two_phase *sim) {
 void pressure_level_set(struct two_phase *sim) {
   const struct params *params = sim->params;
   double now = 0;
-  if (sim->pressure_set) return;
+  if (sim->grid.pressure_set) return;
   switch (params->pressure_at) {
     case PRESSURE_AT_BOX:
       now = mean_over_box(sim);
@@ -124,5 +124,5 @@ void pressure_level_set(struct two_phase *sim) {
       break;
   }
   const double shift = params->pressure_level - now;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) sim->p->v[i] += shift;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) sim->p->v[i] += shift;
 }

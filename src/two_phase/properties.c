@@ -353,9 +353,9 @@ static void mix_viscosity(const struct mesh *mesh, double time,
     rheology_eval(phase[1], time, n, shear_f + begin, p_f + begin, eta_gas);
     for (int32_t k = 0; k < n; k++) {
       const int32_t f = begin + k;
-      if (theta_f[f] < PROPERTIES_GAS) {
+      if (theta_f[f] < PARAMS_GAS) {
         eta_f[f] = eta_gas[k];
-      } else if (theta_f[f] < 1 - PROPERTIES_GAS) {
+      } else if (theta_f[f] < 1 - PARAMS_GAS) {
         m.face[m.n] = f, m.theta[m.n] = theta_f[f], m.p[m.n] = p_f[f];
         if (++m.n == BLOCK) share_stress(time, phase, shear_f, &m, eta_f);
       }

@@ -9,13 +9,13 @@
 
 double rest_fastest(const struct two_phase *sim) {
   double fastest = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     double u2 = 0;
     if (!(sim->c->v[i] > 0.5)) continue;
     for (int d = 0; d < DIM; d++) u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
     fastest = max2(fastest, u2);
   }
-  return sqrt(mesh_max(sim->mesh, fastest));
+  return sqrt(mesh_max(sim->grid.mesh, fastest));
 }
 
 bool rest_is_reached(struct two_phase *sim) {

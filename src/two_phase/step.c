@@ -54,8 +54,8 @@ enum { RETRIES = 3, SHORTENINGS = 30 };
 #define RETRY_FACTOR 0.25
 
 static struct projection projection_of(struct two_phase *sim) {
-  return (struct projection){.mesh = sim->mesh,
-                             .hierarchy = sim->hierarchy,
+  return (struct projection){.mesh = sim->grid.mesh,
+                             .hierarchy = sim->grid.hierarchy,
                              .rho = sim->rho->v,
                              .alpha_f = sim->alpha_f->v,
                              .gravity_f = sim->gravity_f->v,
@@ -87,11 +87,11 @@ static struct balance balance_of(const struct two_phase *sim) {
 /* p at the nodes as the pressure solve sees it. The density is filled. */
 static void fill_pressure(struct two_phase *sim) {
   const struct bc *bc = sim->p->bc;
-  mesh_fill_potential(sim->mesh, sim->rho->v, 1, &sim->p->v, &bc, false);
+  mesh_fill_potential(sim->grid.mesh, sim->rho->v, 1, &sim->p->v, &bc, false);
 }
 
 static void update_density(struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const struct balance balance = balance_of(sim);
   double density[2], *normal[DIM];
   two_phase_densities(sim, density);
@@ -101,7 +101,7 @@ static void update_density(struct two_phase *sim) {
   if (!sim->params->single_phase) {
     skin_find(mesh, sim->c->v, density[1] / density[0], sim->skin);
   }
-  properties_density(mesh, density, sim->c->v, sim->closed, sim->rho->v,
+  properties_density(mesh, density, sim->c->v, sim->grid.closed, sim->rho->v,
                      sim->alpha_f->v);
   field_fill(mesh, sim->rho);
   properties_gravity(mesh, density, &balance, sim->c->v, normal, sim->plane->v,
@@ -113,7 +113,7 @@ static void update_density(struct two_phase *sim) {
 static void find_acceleration(struct two_phase *sim, double *const g[DIM]) {
   const struct projection projection = projection_of(sim);
   fill_pressure(sim);
-  poisson_flux(sim->mesh, projection.alpha_f, sim->p->v, projection.flux);
+  poisson_flux(sim->grid.mesh, projection.alpha_f, sim->p->v, projection.flux);
   projection_acceleration(&projection, sim->face[1]->v, g);
 }
 
@@ -126,7 +126,7 @@ static void update_acceleration(struct two_phase *sim) {
   field_arrays(sim->cell, g);
   find_acceleration(sim, g);
   for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       if (sim->c->v[i] > HOLDS_GRAINS) sim->g[e]->v[i] = g[e][i];
     }
   }
@@ -135,7 +135,7 @@ static void update_acceleration(struct two_phase *sim) {
 /* The velocity is filled. */
 static void update_viscosity(struct two_phase *sim,
                              struct field *const velocity[DIM]) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const struct params *params = sim->params;
   double *u[DIM], *normal[DIM];
   field_arrays(velocity, u), field_arrays(sim->normal, normal);
@@ -145,7 +145,7 @@ static void update_viscosity(struct two_phase *sim,
   properties_viscosity(mesh, sim->time, &params->grains,
                        params->single_phase ? NULL : &params->gas,
                        params->gravity, sim->c->v, normal, sim->plane->v,
-                       sim->p->v, sim->closed, sim->face[0]->v, work,
+                       sim->p->v, sim->grid.closed, sim->face[0]->v, work,
                        sim->eta_f->v);
 }
 
@@ -159,9 +159,9 @@ static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
   memcpy(bc, sim->p->bc, sizeof bc);
   for (int k = 0; k < MESH_MAX_PATCHES; k++) bc[k].value = 0;
   projection.bc = bc;
-  memset(phi->v, 0, (size_t)sim->mesh->ncells * sizeof(double));
+  memset(phi->v, 0, (size_t)sim->grid.mesh->ncells * sizeof(double));
   struct solve_stats stats = projection_project(&projection, dt, u_f, phi->v);
-  clean_face_velocity(sim->clean, sim->mesh, sim->open, u_f);
+  clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open, u_f);
   return stats;
 }
 
@@ -174,19 +174,19 @@ static void predictor_acceleration(struct two_phase *sim, double *g[DIM]) {
   struct field *const *sum = viscous ? &sim->cell[2 * DIM] : sim->g;
   field_arrays(sum, g);
   for (int e = 0; e < DIM && viscous; e++) {
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       const double u = sim->u_old[e]->v[i];
       g[e][i] = sim->g[e]->v[i] + sim->viscous_g[e]->v[i] -
                 (drag ? drag[i] * u / sim->rho->v[i] : 0);
     }
   }
-  field_fill_many(sim->mesh, DIM, sum);
+  field_fill_many(sim->grid.mesh, DIM, sum);
 }
 
 /* Stage 5: u_f at half steps, made exactly solenoidal, carries momentum away
  * from the interface. */
 static void advect_momentum(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *u[DIM], *g[DIM], *out[DIM];
   field_arrays(sim->u_old, u), field_arrays(sim->u, out);
   struct advection_work work = {.limiter = sim->params->limiter,
@@ -197,7 +197,7 @@ static void advect_momentum(struct two_phase *sim, double dt) {
     work.flux[e] = sim->face[1 + e]->v;
   }
   predictor_acceleration(sim, g);
-  advection_predict(mesh, dt, u, g, sim->closed, &work, sim->u_half->v);
+  advection_predict(mesh, dt, u, g, sim->grid.closed, &work, sim->u_half->v);
   sim->predictor = make_solenoidal(sim, 0.5 * dt, sim->u_half->v);
   advection_momentum(mesh, dt, u, g, sim->u_half->v,
                      sim->params->single_phase ? NULL : sim->band->v, &work,
@@ -209,7 +209,7 @@ static void advect_momentum(struct two_phase *sim, double dt) {
  * brings the new one. */
 static void viscous_rhs(struct two_phase *sim, double dt,
                         double *const rhs[DIM]) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double theta = sim->params->theta;
   if (theta < 1) {
     double *u[DIM];
@@ -232,16 +232,16 @@ static double velocity_scale(const struct two_phase *sim, double dt) {
     most = max2(most, dt * fabs(sim->params->gravity[d]));
   }
   for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       most = max2(most, fabs(sim->u[e]->v[i]));
     }
   }
-  return mesh_max(sim->mesh, most);
+  return mesh_max(sim->grid.mesh, most);
 }
 
 /* rho + dt drag of the side walls, in scratch. */
 static const double *mass_with_walls(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const struct params *params = sim->params;
   double gravity = 0, *mass = sim->frozen->v;
   struct side_walls_state state = {
@@ -267,7 +267,7 @@ static const double *mass_with_walls(struct two_phase *sim, double dt) {
  * friction of the walls is the first guess, the solve makes the new velocity
  * and acceleration. */
 static void diffuse_momentum(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const struct params *params = sim->params;
   double *u[DIM], *rhs[DIM];
   const struct bc *bc[DIM];
@@ -288,7 +288,7 @@ static void diffuse_momentum(struct two_phase *sim, double dt) {
     }
   }
   sim->scale = velocity_scale(sim, dt);
-  sim->viscous = viscous_solve(mesh, sim->hierarchy, mass, sim->eta_f->v,
+  sim->viscous = viscous_solve(mesh, sim->grid.hierarchy, mass, sim->eta_f->v,
                                sim->skin, params->theta * dt, rhs, bc,
                                params->tolerance_viscous * sim->scale,
                                params->max_iterations, u);
@@ -305,10 +305,10 @@ static void diffuse_momentum(struct two_phase *sim, double dt) {
 /* Stage 8: before repetition k, viscosity from the latest u and p; the
  * advected velocity is set back. */
 static void repeat_properties(struct two_phase *sim, int k) {
-  const size_t bytes = (size_t)sim->mesh->nleaves * sizeof(double);
+  const size_t bytes = (size_t)sim->grid.mesh->nleaves * sizeof(double);
   if (sim->params->picard == 0) return;
   if (k > 0) {
-    field_fill_many(sim->mesh, DIM, sim->u);
+    field_fill_many(sim->grid.mesh, DIM, sim->u);
     update_viscosity(sim, sim->u);
   }
   for (int e = 0; e < DIM; e++) {
@@ -320,7 +320,7 @@ static void repeat_properties(struct two_phase *sim, int k) {
 
 /* How far repetition k has moved u_f from what project has kept. */
 static void measure_repetition(struct two_phase *sim, int k) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double *last = sim->face[DIM]->v;
   double change = 0;
   if (k == 0) return;
@@ -350,7 +350,8 @@ static void add_wall_work(struct two_phase *sim, double dt) {
   double *u[DIM];
   if (!sim->drag) return;
   field_arrays(sim->u, u);
-  sim->energy.dissipated += dt * side_walls_power(sim->mesh, sim->drag->v, u);
+  sim->energy.dissipated +=
+      dt * side_walls_power(sim->grid.mesh, sim->drag->v, u);
 }
 
 /* Room for the new u_f. The first takes that of the predictor, which has done
@@ -360,7 +361,7 @@ static void turn_face_velocity(struct two_phase *sim, int k) {
   double *last = sim->u_f->v;
   if (k > 0) {
     memcpy(sim->face[DIM]->v, last,
-           (size_t)sim->mesh->nfaces_all * sizeof(double));
+           (size_t)sim->grid.mesh->nfaces_all * sizeof(double));
     return;
   }
   sim->u_f->v = sim->u_half->v;
@@ -369,7 +370,7 @@ static void turn_face_velocity(struct two_phase *sim, int k) {
 
 /* Stage 7: u^{n+1}, u_f^{n+1}, p^{n+1/2}; repetition k of it. */
 static void project(struct two_phase *sim, double dt, int k) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   struct projection projection = projection_of(sim);
   double *u[DIM], *g[DIM];
   turn_face_velocity(sim, k);
@@ -394,7 +395,7 @@ static bool follows_velocity(const struct params *params) {
 }
 
 static void set_cell_viscosity(struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double sum = 0;
     for (int f = 0; f < NFACE; f++) sum += sim->eta_f->v[mesh->cell_face[i][f]];
@@ -404,7 +405,7 @@ static void set_cell_viscosity(struct two_phase *sim) {
 
 /* Stage 9: how many cells the surface, or the flow, may have moved. */
 static void add_travel(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const bool everywhere = follows_velocity(sim->params);
   double travel = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -430,7 +431,7 @@ static bool has_failed(const struct two_phase *sim) {
   const struct solve_stats *solve[] = {&sim->pressure, &sim->predictor,
                                        &sim->viscous};
   static const char *const name[] = {"pressure", "predictor", "viscous"};
-  const char *wild = fields_not_finite(&sim->fields, sim->mesh);
+  const char *wild = fields_not_finite(&sim->grid.fields, sim->grid.mesh);
   bool failed = wild != NULL;
   if (failed) {
     log_info("step %lld: %s is not finite", (long long)sim->step, wild);
@@ -485,7 +486,7 @@ static void advance_state(struct two_phase *sim, double dt, double rate) {
 /* Set back the state to that before the step; `before` has what fields_save
  * does not. */
 static void set_back(struct two_phase *sim, const struct two_phase *before) {
-  fields_restore(&sim->fields, sim->mesh);
+  fields_restore(&sim->grid.fields, sim->grid.mesh);
   sim->planes_hold = false;
   sim->energy = before->energy;
   sim->divergence_volume = before->divergence_volume;
@@ -498,7 +499,7 @@ static void set_back(struct two_phase *sim, const struct two_phase *before) {
 static double find_step(struct two_phase *sim, double dt_max) {
   const struct two_phase before = *sim;
   int failures = 0;
-  fields_save(&sim->fields, sim->mesh);
+  fields_save(&sim->grid.fields, sim->grid.mesh);
   for (int attempt = 0; attempt <= SHORTENINGS; attempt++) {
     double rate;
     const double dt = time_step_choose(sim, dt_max, &rate);
@@ -525,9 +526,10 @@ int step_advance(struct two_phase *sim, double dt_max) {
   sim->step++;
   add_travel(sim, dt);
   set_cell_viscosity(sim), lap(sim, STAGE_OTHER);
-  if (adapt_is_due(sim)) adapt_grid(sim);
+  if (adapt_is_due(&sim->grid, sim->step, sim->travel)) two_phase_adapt(sim);
   lap(sim, STAGE_ADAPTATION);
-  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open,
+                      sim->u_f->v);
   lap(sim, STAGE_FRACTION);
   return EXIT_DONE;
 }
@@ -538,7 +540,7 @@ static struct solve_stats static_pressure(struct two_phase *sim) {
   double *rest[DIM], *g[DIM], size = 0;
   field_arrays(sim->u_old, rest), field_arrays(sim->g, g);
   for (int d = 0; d < DIM; d++) {
-    memset(rest[d], 0, (size_t)sim->mesh->ncells * sizeof(double));
+    memset(rest[d], 0, (size_t)sim->grid.mesh->ncells * sizeof(double));
     size = max2(size, fabs(sim->params->gravity[d]));
   }
   /* 1e-13 of the divergence gravity makes at a density jump, but not below
@@ -562,12 +564,12 @@ void step_acceleration(struct two_phase *sim, double *const g[DIM]) {
 void step_start(struct two_phase *sim) {
   sim->planes_hold = false;
   update_density(sim);
-  const double divergence = clean_divergence(sim->mesh, sim->u_f->v);
+  const double divergence = clean_divergence(sim->grid.mesh, sim->u_f->v);
   if (divergence > SOLENOIDAL * time_step_rate(sim)) {
     make_solenoidal(sim, 1 / divergence, sim->u_f->v);
   }
   sim->pressure = static_pressure(sim);
-  field_fill_many(sim->mesh, DIM, sim->u);
+  field_fill_many(sim->grid.mesh, DIM, sim->u);
   update_viscosity(sim, sim->u);
   set_cell_viscosity(sim);
 }

@@ -18,7 +18,7 @@ static const double SHORT = 1e-9; /* of the times of the case */
 static const double GROWS = 1.1;
 
 static double speed_of_case(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const struct function *u = sim->params->velocity;
   double fastest = time_step_boundary_speed(sim, false);
   for (int d = 0; d < DIM; d++) {
@@ -70,7 +70,7 @@ static void take_worst(const struct mesh *mesh, int32_t i, double rate,
  * grains with the largest acceleration. */
 static void find_worst(const struct two_phase *sim, struct worst *flow,
                        struct worst *forces) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   *flow = *forces = (struct worst){.rate = 0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double sum = 0, fastest = 0, g2 = 0;

@@ -19,7 +19,7 @@
 #define DT_LEAST 0.01
 
 double time_step_boundary_speed(const struct two_phase *sim, bool per_leaf) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double speed[MESH_MAX_PATCHES] = {0}, fastest = 0, most = 0;
   for (int patch = 0; patch < MESH_MAX_PATCHES; patch++) {
     for (int e = 0; e < DIM; e++) {
@@ -38,7 +38,7 @@ double time_step_boundary_speed(const struct two_phase *sim, bool per_leaf) {
 }
 
 double time_step_rate(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double rate = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double sum = 0;
@@ -59,7 +59,7 @@ static double cfl_bound(const struct two_phase *sim, double rate) {
  * yet than their acceleration would make them over it, |u| < sqrt(|g| h): the
  * viscosity is that of the last strain rate, and lags behind. */
 static double acceleration_bound(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double g2 = 0, u2 = 0;
@@ -86,7 +86,7 @@ static double wave_bound(const struct params *params) {
 double time_step_choose(const struct two_phase *sim, double dt_max,
                         double *rate) {
   const double boundary =
-      mesh_max(sim->mesh, time_step_boundary_speed(sim, true));
+      mesh_max(sim->grid.mesh, time_step_boundary_speed(sim, true));
   double dt = min2(dt_max, sim->params->dt_max);
   dt = min2(dt, wave_bound(sim->params));
   *rate = time_step_rate(sim);

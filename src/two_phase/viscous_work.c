@@ -17,11 +17,11 @@ static bool boundaries_move(const struct two_phase *sim) {
  * from the viscous stress there. u is filled. */
 static void boundary_power(const struct two_phase *sim, const double density[2],
                            double power[2]) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int patch = mesh->face_patch[f];
-      if (patch < 0 || !sim->closed[patch]) continue;
+      if (patch < 0 || !sim->grid.closed[patch]) continue;
       const int32_t *node = mesh->face_node[f], i = mesh->face_owner[f];
       const double out = node[0] == i ? 1 : -1, c = sim->c->v[i];
       const double area = mesh_volume(mesh, i) / mesh->h[i];
@@ -41,7 +41,7 @@ static void boundary_power(const struct two_phase *sim, const double density[2],
 /* Sum the power of viscosity on grains and gas of this rank. */
 static void viscous_power(const struct two_phase *sim, double dt,
                           const double density[2], double power[2]) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double *drag = sim->drag ? sim->drag->v : NULL;
   for (int e = 0; e < DIM; e++) {
     const double *g = sim->g[e]->v, *v = sim->viscous_g[e]->v;
@@ -61,9 +61,10 @@ void viscous_work_add(struct two_phase *sim, double dt) {
   two_phase_densities(sim, density);
   viscous_power(sim, dt, density, lost);
   if (boundaries_move(sim)) {
-    field_fill_many(sim->mesh, DIM, sim->u);
+    field_fill_many(sim->grid.mesh, DIM, sim->u);
     boundary_power(sim, density, brought);
   }
-  sim->energy.dissipated += dt * mesh_sum(sim->mesh, brought[0] - lost[0]);
-  sim->energy.gas_dissipated += dt * mesh_sum(sim->mesh, brought[1] - lost[1]);
+  sim->energy.dissipated += dt * mesh_sum(sim->grid.mesh, brought[0] - lost[0]);
+  sim->energy.gas_dissipated +=
+      dt * mesh_sum(sim->grid.mesh, brought[1] - lost[1]);
 }

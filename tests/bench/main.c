@@ -18,6 +18,7 @@
 #include "../mesh/transport.h"
 #include "talus/hierarchy.h"
 #include "talus/poisson.h"
+#include "talus/two_phase/start.h"
 #include "talus/viscous.h"
 
 struct result {
@@ -135,12 +136,12 @@ static struct result time_adaptation(int level, int calls) {
   params.shape = (struct function){ball, &body};
   params_follow_surface(&params, level - 3, 3);
   struct two_phase *sim = two_phase_new(&params);
-  struct result result = {.leaves = forest_nleaves_global(sim->forest)};
+  struct result result = {.leaves = forest_nleaves_global(sim->grid.forest)};
   for (int k = 0; k < calls; k++) {
     body.centre[0] += 0.5 / (1 << level);
-    fill_shape(sim->mesh, ball, &body, sim->c->v);
+    fill_shape(sim->grid.mesh, ball, &body, sim->c->v);
     const double begin = MPI_Wtime();
-    adapt_grid(sim);
+    two_phase_adapt(sim);
     result.seconds += (MPI_Wtime() - begin) / calls;
   }
   two_phase_destroy(sim);

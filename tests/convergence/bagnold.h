@@ -33,10 +33,10 @@ static inline double bagnold_exact(double slope, double y) {
 static inline struct norms bagnold_norms(const struct two_phase *sim,
                                          double slope) {
   double *error = sim->frozen->v;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    error[i] = sim->u[0]->v[i] - bagnold_exact(slope, sim->mesh->x[i][1]);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    error[i] = sim->u[0]->v[i] - bagnold_exact(slope, sim->grid.mesh->x[i][1]);
   }
-  return norms_of(sim->mesh, error);
+  return norms_of(sim->grid.mesh, error);
 }
 
 /* A leaf next to the surface. */
@@ -51,8 +51,8 @@ static inline int32_t bagnold_top(const struct mesh *mesh) {
 /* Relative error of u there. */
 static inline double bagnold_top_error(const struct two_phase *sim,
                                        double slope) {
-  const int32_t i = bagnold_top(sim->mesh);
-  const double exact = bagnold_exact(slope, sim->mesh->x[i][1]);
+  const int32_t i = bagnold_top(sim->grid.mesh);
+  const double exact = bagnold_exact(slope, sim->grid.mesh->x[i][1]);
   return fabs(sim->u[0]->v[i] - exact) / exact;
 }
 

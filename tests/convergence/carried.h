@@ -7,6 +7,7 @@
 #include "../mesh/transport.h"
 #include "report.h"
 #include "runs.h"
+#include "talus/two_phase/start.h"
 
 /* A flow that brings a shape back to its place: velocity(d, x, h), times a
  * factor of time. */
@@ -32,7 +33,7 @@ struct carried {
 
 /* Fractions of the shape, corners found to 1/32 of a leaf. */
 static inline void carried_shape(const struct carried *c, double *v) {
-  const struct mesh *mesh = c->sim->mesh;
+  const struct mesh *mesh = c->sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     v[i] = shape_fraction(c->flow->shape, c->flow->context, mesh->x[i],
                           mesh->h[i], 5);
@@ -40,7 +41,7 @@ static inline void carried_shape(const struct carried *c, double *v) {
 }
 
 static inline void carried_set_faces(struct carried *c) {
-  const struct mesh *mesh = c->sim->mesh;
+  const struct mesh *mesh = c->sim->grid.mesh;
   c->steady = mem_resize(c->steady, (size_t)mesh->nfaces_all, sizeof(double));
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
@@ -63,7 +64,7 @@ static inline double carried_path(const struct carried *c, double dt) {
  * beyond the turn or the end. */
 static inline double carried_dt(const struct carried *c) {
   const double time = c->sim->time, turn = c->flow->turn;
-  const double most = courant_dt(c->sim->mesh, c->steady, 0.5);
+  const double most = courant_dt(c->sim->grid.mesh, c->steady, 0.5);
   double low = 0, high = (time < turn ? turn : c->flow->end) - time;
   if (fabs(carried_path(c, high)) <= most) return high;
   for (int k = 0; k < 60; k++) {
@@ -79,19 +80,20 @@ static inline double carried_dt(const struct carried *c) {
 static inline void carried_adapt(struct carried *c, double dt) {
   struct two_phase *sim = c->sim;
   double travel = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int f = 0; f < NFACE && vof_is_cut(sim->c->v[i]); f++) {
-      const double u = fabs(sim->u_f->v[sim->mesh->cell_face[i][f]]);
-      travel = fmax(travel, u * dt / sim->mesh->h[i]);
+      const double u = fabs(sim->u_f->v[sim->grid.mesh->cell_face[i][f]]);
+      travel = fmax(travel, u * dt / sim->grid.mesh->h[i]);
     }
   }
   sim->travel += travel;
-  if (adapt_is_due(sim) && adapt_grid(sim)) carried_set_faces(c);
+  if (adapt_is_due(&sim->grid, sim->step, sim->travel) && two_phase_adapt(sim))
+    carried_set_faces(c);
 }
 
 static inline void carried_step(struct carried *c) {
   struct two_phase *sim = c->sim;
-  const struct bench bench = {.mesh = sim->mesh};
+  const struct bench bench = {.mesh = sim->grid.mesh};
   struct transport t = {.c = sim->c,
                         .u_f = sim->u_f,
                         .plane = sim->plane,
@@ -99,11 +101,11 @@ static inline void carried_step(struct carried *c) {
                         .flux = sim->face[0]};
   const double dt = carried_dt(c), factor = carried_path(c, dt) / dt;
   field_arrays(sim->normal, t.normal);
-  for (int32_t f = 0; f < sim->mesh->nfaces_all; f++) {
+  for (int32_t f = 0; f < sim->grid.mesh->nfaces_all; f++) {
     sim->u_f->v[f] = factor * c->steady[f];
   }
   transport_step(&bench, &t, (int)(sim->step % DIM), dt);
-  const double volume = integral(sim->mesh, sim->c->v);
+  const double volume = integral(sim->grid.mesh, sim->c->v);
   c->excess = larger(c->excess, transport_excess(&bench, &t));
   c->drift = larger(c->drift, fabs(volume / c->volume - 1));
   sim->time += dt, sim->step++;
@@ -115,10 +117,10 @@ static inline double carried_error(struct carried *c) {
   struct two_phase *sim = c->sim;
   double *error = sim->cell[0]->v;
   carried_shape(c, error);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     error[i] = fabs(error[i] - sim->c->v[i]);
   }
-  return integral(sim->mesh, error);
+  return integral(sim->grid.mesh, error);
 }
 
 /* One run; adapted: the grid is fine (`level`) in a band of three cells along
@@ -135,7 +137,7 @@ static inline double carried_run(const struct carried_flow *flow, int level,
   struct carried c = {.flow = flow, .sim = two_phase_new(&params)};
   carried_set_faces(&c);
   carried_shape(&c, c.sim->c->v);
-  c.volume = integral(c.sim->mesh, c.sim->c->v);
+  c.volume = integral(c.sim->grid.mesh, c.sim->c->v);
   while (c.sim->time < flow->end * (1 - 1e-12)) carried_step(&c);
   const double error = carried_error(&c);
   *drift = c.drift;

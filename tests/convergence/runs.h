@@ -10,6 +10,7 @@
 
 #include "../mesh/sim.h"
 #include "talus/case.h"
+#include "talus/two_phase/start.h"
 
 /* An example of the manual under way. */
 struct example {
@@ -60,11 +61,11 @@ static inline bool run_to(struct two_phase *sim, double time) {
 static inline double run_rate(const struct two_phase *sim) {
   double most = 0;
   for (int d = 0; d < DIM; d++) {
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       most = larger(most, fabs(sim->u[d]->v[i] - sim->u_old[d]->v[i]));
     }
   }
-  return mesh_max(sim->mesh, most) / sim->dt;
+  return mesh_max(sim->grid.mesh, most) / sim->dt;
 }
 
 /* Step until max |du/dt| < rate; false if that is not so at `time`. */

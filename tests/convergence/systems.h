@@ -10,11 +10,12 @@
 
 /* Grids fixed in advance. The refined parts lie off the middle, so that no
  * solution here is symmetric about a jump of level. */
-enum grid { GRID_UNIFORM, GRID_BALL, GRID_TWO_JUMPS, NGRIDS };
+enum grid_kind { GRID_UNIFORM, GRID_BALL, GRID_TWO_JUMPS, NGRIDS };
 static const char *const grid_name[] = {"uniform", "adapted", "two jumps"};
 
 /* Level l everywhere, l + 1 in a ball, or l + 2 in a ball and l + 1 around. */
-static inline struct forest *grid_make(enum grid grid, bool periodic, int l) {
+static inline struct forest *grid_make(enum grid_kind grid, bool periodic,
+                                       int l) {
   static const double centre[] = {0.31, 0.42, 0.53};
   struct forest *forest = grid_new(MPI_COMM_WORLD, 1, periodic, l, l);
   if (grid == GRID_BALL) grid_refine(forest, centre, 0.2, l + 1);
@@ -109,7 +110,7 @@ static inline double largest_size(const struct mesh *mesh, const double *v) {
 }
 
 /* Error of the solution of a problem on one grid. */
-typedef struct norms grid_solver(const void *problem, enum grid grid,
+typedef struct norms grid_solver(const void *problem, enum grid_kind grid,
                                  int level);
 
 /* Errors on levels 4 to 8 of every grid; orders that L2 and max must reach. */
@@ -124,7 +125,8 @@ static inline void report_grids(struct report *report, const char *name,
   for (int grid = 0; grid < NGRIDS; grid++) {
     double l2[N], most[N];
     for (int l = 0; l < N; l++) {
-      const struct norms norms = solve(problem, (enum grid)grid, FIRST + l);
+      const struct norms norms =
+          solve(problem, (enum grid_kind)grid, FIRST + l);
       l2[l] = norms.l2, most[l] = norms.most;
     }
     snprintf(row, LENGTH, "%s %s", name, grid_name[grid]);

@@ -17,6 +17,7 @@
 #include "report.h"
 #include "runs.h"
 #include "talus/advection.h"
+#include "talus/two_phase/start.h"
 
 static const double kWave = 6.283185307179586, kMean[] = {1, 0.5}, kSize = 0.5;
 static int kAxis[] = {0, 1};
@@ -58,11 +59,11 @@ static double vortex_error(int level, bool adapted, enum limiter limiter) {
   const bool good = run_to(sim, end);
   double *error = sim->frozen->v;
   at[0].time = sim->time;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double x[3] = {sim->mesh->x[i][0], sim->mesh->x[i][1]};
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double x[3] = {sim->grid.mesh->x[i][0], sim->grid.mesh->x[i][1]};
     error[i] = sim->u[0]->v[i] - carried_vortices(&at[0], x);
   }
-  const double l2 = norms_of(sim->mesh, error).l2;
+  const double l2 = norms_of(sim->grid.mesh, error).l2;
   two_phase_destroy(sim);
   return good ? l2 : NAN;
 }
@@ -106,7 +107,7 @@ static double strip_excess(enum limiter limiter) {
   bool good = true;
   while (good && sim->time < 1) {
     good = step_advance(sim, 1 - sim->time) == EXIT_DONE;
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       const double v = sim->u[1]->v[i];
       most = larger(most, larger(-v, v - 1));
     }

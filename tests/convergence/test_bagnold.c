@@ -26,7 +26,7 @@ static struct steady measure(const char *parameters, int trees, int level,
     const struct norms norms = bagnold_norms(sim, kSlope);
     out.l2 = norms.l2, out.most = norms.most;
     out.top = bagnold_top_error(sim, kSlope);
-    out.across = norms_of(sim->mesh, sim->u[1]->v).most;
+    out.across = norms_of(sim->grid.mesh, sim->u[1]->v).most;
   }
   example_destroy(&example);
   return out;

@@ -28,7 +28,7 @@ static const double kFlowing = 0.43, kHeld = 0.35, kEtaMax = 1e4;
 /* Largest relative error of the viscosity on faces along the flow:
  * tan(slope) p over the exact shear rate. */
 static double viscosity_error(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double most = 0;
   for (int32_t f = mesh->face_begin[1]; f < mesh->face_begin[2]; f++) {
     const int32_t i = mesh->face_owner[f];
@@ -45,17 +45,17 @@ static double viscosity_error(const struct two_phase *sim) {
 /* Error of u relative to the exact one of the surface. */
 static double creep_error(const struct two_phase *sim) {
   double *error = sim->frozen->v;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double y = sim->mesh->x[i][1];
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double y = sim->grid.mesh->x[i][1];
     const double scale = kEtaMax / sin(kHeld);
     error[i] = 2 * (scale * sim->u[0]->v[i] - (y - 0.5 * y * y));
   }
-  return norms_of(sim->mesh, error).l2;
+  return norms_of(sim->grid.mesh, error).l2;
 }
 
 /* Root of the integral of s e^2 over the errors e that bagnold_norms left. */
 static double deep_norm(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *e = sim->frozen->v;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     e[i] *= sqrt(1 - mesh->x[i][1]);

@@ -22,7 +22,7 @@ static double top_error(double slope, double eta_max) {
                   1 << (LEVEL - 1), slope, eta_max);
   struct two_phase *sim = example.sim;
   const bool good = run_steady(sim, kBagnoldSteady * exact, 5000);
-  const double u = sim->u[0]->v[bagnold_top(sim->mesh)];
+  const double u = sim->u[0]->v[bagnold_top(sim->grid.mesh)];
   example_destroy(&example);
   return good ? fabs(u - exact) / exact : NAN;
 }

@@ -101,7 +101,7 @@ static struct result measure(const struct layers *layers, int level) {
       example_new("bagnold_two_layers", "trees=%d level=1 ratio=%g start=%d",
                   1 << (level - 1), layers->ratio, layers->ratio < 0.05);
   struct two_phase *sim = example.sim;
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   struct result result = {NAN, NAN};
   double *error = sim->frozen->v, most = 0;
   if (run_steady(sim, kBagnoldSettled, 2000)) {

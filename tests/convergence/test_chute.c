@@ -30,7 +30,7 @@ static double exact(double x) {
 /* Where the line through I/(I + I0) vanishes. Faces below 0.05 of it are in
  * or next to the plug, where eta_max acts. */
 static double plug_width(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double x[MOST_FACES], part[MOST_FACES], c0, c1, cov00, cov01, cov11, rest;
   size_t n = 0;
   for (int32_t f = mesh->face_begin[0]; f < mesh->face_begin[1]; f++) {
@@ -50,8 +50,8 @@ static double plug_width(const struct two_phase *sim) {
 /* Speed of the leaf next to the axis. */
 static double plug_speed(const struct two_phase *sim) {
   int32_t axis = 0;
-  for (int32_t i = 1; i < sim->mesh->nleaves; i++) {
-    if (sim->mesh->x[i][0] < sim->mesh->x[axis][0]) axis = i;
+  for (int32_t i = 1; i < sim->grid.mesh->nleaves; i++) {
+    if (sim->grid.mesh->x[i][0] < sim->grid.mesh->x[axis][0]) axis = i;
   }
   return -sim->u[1]->v[axis];
 }
@@ -68,12 +68,12 @@ static struct steady measure(int level) {
   struct two_phase *sim = example.sim;
   double *error = sim->frozen->v;
   if (run_steady(sim, 1e-6, 2000)) {
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-      error[i] = -sim->u[1]->v[i] - exact(sim->mesh->x[i][0]);
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+      error[i] = -sim->u[1]->v[i] - exact(sim->grid.mesh->x[i][0]);
     }
     out.width = fabs(plug_width(sim) / (kFriction * kPressure) - 1);
     out.speed = fabs(plug_speed(sim) / exact(0) - 1);
-    out.l2 = norms_of(sim->mesh, error).l2;
+    out.l2 = norms_of(sim->grid.mesh, error).l2;
     out.time = sim->time;
   }
   example_destroy(&example);

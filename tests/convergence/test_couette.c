@@ -27,6 +27,7 @@
 #include "report.h"
 #include "systems.h"
 #include "talus/two_phase/properties.h"
+#include "talus/two_phase/start.h"
 #include "talus/viscous.h"
 #include "talus/vof.h"
 
@@ -63,9 +64,9 @@ static void couette_errors(double part, double density_soft, double error[2]) {
   struct two_phase *sim = two_phase_new(&params);
   const bool good = run_steady(sim, 1e-11, params.stop);
   error[0] = error[1] = good ? 0 : NAN;
-  for (int32_t i = 0; i < sim->mesh->nleaves && good; i++) {
-    const double y = sim->mesh->x[i][1];
-    const bool cut = fabs(y - interface) < 0.5 * sim->mesh->h[i];
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves && good; i++) {
+    const double y = sim->grid.mesh->x[i][1];
+    const bool cut = fabs(y - interface) < 0.5 * sim->grid.mesh->h[i];
     const double off = fabs(sim->u[0]->v[i] - couette(interface, y));
     error[cut] = larger(error[cut], larger(off, fabs(sim->u[1]->v[i])));
   }
@@ -161,7 +162,8 @@ static bool drive_stripes(struct bench *b, const double *c, const double *eta_f,
   return stats.status == SOLVE_CONVERGED;
 }
 
-static struct norms stripe_errors(enum grid grid, int level, double middle) {
+static struct norms stripe_errors(enum grid_kind grid, int level,
+                                  double middle) {
   static const char *const names[] = {"u_x", "u_y", "u_z"};
   struct bench *b = bench_on(grid_make(grid, true, level));
   struct field *c = bench_cell(b, "c"), *eta_f = bench_face(b, "eta_f");
@@ -193,7 +195,7 @@ static struct norms stripe_errors(enum grid grid, int level, double middle) {
 static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
 
 static void report_stripes(struct report *report, const char *name,
-                           enum grid grid) {
+                           enum grid_kind grid) {
   double l2[N], most[N];
   for (int l = 0; l < N; l++) {
     l2[l] = most[l] = 0;

@@ -23,6 +23,7 @@
 #include "../mesh/transport.h"
 #include "report.h"
 #include "runs.h"
+#include "talus/two_phase/start.h"
 
 static const double kBox = 4, kTravel = 3;
 static struct body start = {{1, 2}, 0.5};
@@ -51,12 +52,12 @@ struct track {
 
 /* Centre of volume, found from the last one, as the box is periodic. */
 static void follow(const struct two_phase *sim, struct track *track) {
-  double shift[2] = {0}, volume = integral(sim->mesh, sim->c->v);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  double shift[2] = {0}, volume = integral(sim->grid.mesh, sim->c->v);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int d = 0; d < 2; d++) {
       const double from =
-          remainder(sim->mesh->x[i][d] - track->centre[d], kBox);
-      shift[d] += sim->c->v[i] * mesh_volume(sim->mesh, i) * from / volume;
+          remainder(sim->grid.mesh->x[i][d] - track->centre[d], kBox);
+      shift[d] += sim->c->v[i] * mesh_volume(sim->grid.mesh, i) * from / volume;
     }
   }
   for (int d = 0; d < 2; d++) track->centre[d] += shift[d];
@@ -66,10 +67,10 @@ static void follow(const struct two_phase *sim, struct track *track) {
 /* Mean velocity of the grains along x. */
 static double mean_speed(const struct two_phase *sim) {
   double sum = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    sum += sim->c->v[i] * mesh_volume(sim->mesh, i) * sim->u[0]->v[i];
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    sum += sim->c->v[i] * mesh_volume(sim->grid.mesh, i) * sim->u[0]->v[i];
   }
-  return sum / integral(sim->mesh, sim->c->v);
+  return sum / integral(sim->grid.mesh, sim->c->v);
 }
 
 /* Level set of the square at *context, periodic. */
@@ -87,11 +88,11 @@ static double shape_error(struct two_phase *sim, const struct track *to) {
   struct body body = start;
   double *error = sim->cell[0]->v;
   for (int d = 0; d < 2; d++) body.centre[d] = to->centre[d];
-  fill_shape(sim->mesh, wrapped_square, &body, error);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  fill_shape(sim->grid.mesh, wrapped_square, &body, error);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     error[i] = fabs(sim->c->v[i] - error[i]);
   }
-  return integral(sim->mesh, error);
+  return integral(sim->grid.mesh, error);
 }
 
 static void run_ratio(struct report *report, const char *grid, double ratio,

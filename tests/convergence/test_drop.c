@@ -28,7 +28,7 @@ struct drop {
 
 /* Distance of the last mixed leaf of the floor behind the front, in leaves. */
 static double mixed_behind_front(const struct two_phase *sim) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double front = 0, first = HUGE_VAL, h = HUGE_VAL;
   for (int pass = 0; pass < 2; pass++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {

@@ -8,6 +8,7 @@
  */
 #include "report.h"
 #include "runs.h"
+#include "talus/two_phase/start.h"
 
 enum { FIRST = 4, N = 3, STEPS = 1000 };
 static const double kDepth = 0.53, kStep = 0.05;

@@ -44,7 +44,7 @@ struct flow {
   double *eta_f, *rho, *rhs[DIM];
 };
 
-static void flow_start(struct flow *s, enum grid grid, int level) {
+static void flow_start(struct flow *s, enum grid_kind grid, int level) {
   static const char *const names[] = {"u_x", "u_y", "u_z"};
   s->bench = bench_on(grid_make(grid, true, level));
   const struct mesh *mesh = s->bench->mesh;
@@ -115,7 +115,7 @@ static double compression(struct flow *s) {
   return stats.status == SOLVE_CONVERGED ? sqrt(sum / area) : NAN;
 }
 
-static void solve(enum grid grid, int level, double value[3]) {
+static void solve(enum grid_kind grid, int level, double value[3]) {
   struct flow s;
   struct norms norms[DIM];
   flow_start(&s, grid, level);

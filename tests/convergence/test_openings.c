@@ -11,6 +11,7 @@
 
 #include "report.h"
 #include "runs.h"
+#include "talus/two_phase/start.h"
 
 static const char kJet[] =
     "local W, level = param('W', 0.25), param('level', 6)\n"
@@ -40,7 +41,7 @@ static double jet_error(double width, int level) {
   while (sim->time < 2 * (1 - 1e-12) && isfinite(most)) {
     if (step_advance(sim, 2 - sim->time) != EXIT_DONE) most = NAN;
     const double time = sim->time - 0.5 * sim->dt; /* of c */
-    const double volume = integral(sim->mesh, sim->c->v);
+    const double volume = integral(sim->grid.mesh, sim->c->v);
     most = fmax(most, fabs(volume / (width * 0.5 * time) - 1));
   }
   two_phase_destroy(sim);
@@ -61,7 +62,7 @@ static double silo_rate(const char *width, const char *inside) {
     good = step_advance(sim, 4 - sim->time) == EXIT_DONE;
     if (sim->time < 2 || n == MOST) continue;
     time[n] = sim->time - 0.5 * sim->dt;
-    volume[n++] = integral(sim->mesh, sim->c->v);
+    volume[n++] = integral(sim->grid.mesh, sim->c->v);
   }
   if (good) {
     gsl_fit_linear(time, 1, volume, 1, (size_t)n, &c0, &slope, &cov00, &cov01,

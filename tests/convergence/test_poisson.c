@@ -91,7 +91,7 @@ static struct norms error_of(const struct problem *problem,
   return norms;
 }
 
-static struct norms solve(const void *context, enum grid grid, int level) {
+static struct norms solve(const void *context, enum grid_kind grid, int level) {
   const struct problem *problem = context;
   struct forest *forest = grid_make(grid, problem->periodic, level);
   struct mesh *mesh = mesh_new(forest);

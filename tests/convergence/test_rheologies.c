@@ -194,7 +194,7 @@ static void report_aspect_ratios(struct report *report) {
 
 /* Part of the grains that is in cells, not mostly gas, faster than a speed. */
 static double faster_part(const struct two_phase *sim, double speed) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double sum[2] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double grains = sim->c->v[i] * mesh_volume(mesh, i);

@@ -59,14 +59,14 @@ struct discharge {
 /* Outward flux through the floor with which c is moved in the next step, and
  * what is at the outlet. */
 static double outlet_flux(struct two_phase *sim, struct discharge *out) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *u_f = sim->u_half->v, sum = 0;
   memcpy(u_f, sim->u_f->v, (size_t)mesh->nfaces_all * sizeof(double));
-  clean_face_velocity(sim->clean, mesh, sim->open, u_f);
+  clean_face_velocity(sim->grid.clean, mesh, sim->grid.open, u_f);
   for (int32_t f = mesh->face_begin[1]; f < mesh->face_begin[2]; f++) {
     const int patch = mesh->face_patch[f];
     const int32_t leaf = mesh->face_leaf[f][1];
-    if (patch < 0 || !sim->open[patch] || leaf < 0) continue;
+    if (patch < 0 || !sim->grid.open[patch] || leaf < 0) continue;
     if (mesh->x[leaf][1] > mesh->h[leaf]) continue;
     sum -= u_f[f] * mesh->h[leaf];
     out->least = smaller(out->least, sim->c->v[leaf]);
@@ -80,7 +80,7 @@ static void record(struct two_phase *sim, double parts, struct discharge *out) {
   CHECK(out->n < MOST_STEPS, "more than %d steps", MOST_STEPS);
   /* c is half a step behind */
   out->time[out->n] = sim->time - 0.5 * sim->dt;
-  out->volume[out->n++] = parts * integral(sim->mesh, sim->c->v);
+  out->volume[out->n++] = parts * integral(sim->grid.mesh, sim->c->v);
   for (int k = 0; k < 2 && sim->step > 0; k++) {
     if (sim->time > 0.1 && count[k] > out->iterations[k]) {
       out->iterations[k] = count[k];

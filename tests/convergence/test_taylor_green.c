@@ -17,6 +17,7 @@
  * seen from grid to grid. */
 #include "report.h"
 #include "runs.h"
+#include "talus/two_phase/start.h"
 
 static const double kWave = 6.283185307179586, kEnd = 0.4, kThin = 0.01;
 static int kAxis[] = {0, 1};
@@ -70,11 +71,11 @@ static double space_error(int level, bool adapted) {
   }
   double *error = sim->frozen->v;
   const double decay = exp(-2 * kThin * kWave * kWave * sim->time);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double x[3] = {sim->mesh->x[i][0], sim->mesh->x[i][1]};
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double x[3] = {sim->grid.mesh->x[i][0], sim->grid.mesh->x[i][1]};
     error[i] = sim->u[0]->v[i] - decay * vortices(&kAxis[0], x);
   }
-  const double l2 = norms_of(sim->mesh, error).l2;
+  const double l2 = norms_of(sim->grid.mesh, error).l2;
   two_phase_destroy(sim);
   return good ? l2 : NAN;
 }

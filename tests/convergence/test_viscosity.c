@@ -60,7 +60,7 @@ struct system {
 };
 
 static void system_start(struct system *s, const struct problem *problem,
-                         enum grid grid, int level) {
+                         enum grid_kind grid, int level) {
   s->forest = grid_make(grid, problem->periodic, level);
   s->mesh = mesh_new(s->forest);
   s->hierarchy = hierarchy_new(s->mesh);
@@ -88,7 +88,7 @@ static void system_end(struct system *s) {
 }
 
 /* L2 of the error of the velocity vector, and its largest component. */
-static struct norms solve(const void *context, enum grid grid, int level) {
+static struct norms solve(const void *context, enum grid_kind grid, int level) {
   const struct problem *problem = context;
   struct system s = {0};
   const struct bc *bc[DIM];

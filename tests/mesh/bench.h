@@ -44,11 +44,11 @@ static inline void bench_destroy(struct bench *b) {
 }
 
 static inline struct field *bench_cell(struct bench *b, const char *name) {
-  return fields_add(&b->fields, b->mesh, name, "", "", FIELD_CELL, REMAP_NONE);
+  return fields_add(&b->fields, b->mesh, name, "", "", FIELD_CELL, NULL);
 }
 
 static inline struct field *bench_face(struct bench *b, const char *name) {
-  return fields_add(&b->fields, b->mesh, name, "", "", FIELD_FACE, REMAP_NONE);
+  return fields_add(&b->fields, b->mesh, name, "", "", FIELD_FACE, NULL);
 }
 
 /* One field per axis; `names` has at least DIM entries. */

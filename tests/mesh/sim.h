@@ -76,14 +76,14 @@ static inline double column(void *context, const double x[3]) {
 
 static inline void sim_fill(struct two_phase *sim) {
   const struct params *params = sim->params;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double *centre = sim->mesh->x[i];
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double *centre = sim->grid.mesh->x[i];
     double x[3] = {0};
     for (int d = 0; d < DIM; d++) x[d] = centre[d];
     sim->c->v[i] =
         params->shape.eval
             ? shape_fraction(params->shape.eval, params->shape.context, centre,
-                             sim->mesh->h[i], 4)
+                             sim->grid.mesh->h[i], 4)
             : 1;
     for (int d = 0; d < DIM; d++) {
       const struct function *u = &params->velocity[d];
@@ -97,25 +97,26 @@ static inline void sim_fill(struct two_phase *sim) {
 static inline struct two_phase *sim_new(const struct params *params,
                                         MPI_Comm comm) {
   struct forest_layout layout;
-  two_phase_layout(params, &layout);
+  grid_layout(params, &layout);
   const int start =
       params->ncriteria > 0 ? params->level_min : params->level_max;
   struct two_phase *sim =
       two_phase_new_on(params, forest_new(comm, &layout, start));
   sim_fill(sim);
   for (int k = 0; k < 20 && params->ncriteria > 0; k++) {
-    if (!adapt_grid(sim)) break;
+    if (!two_phase_adapt(sim)) break;
     sim_fill(sim);
   }
-  field_fill_many(sim->mesh, DIM, sim->u);
+  field_fill_many(sim->grid.mesh, DIM, sim->u);
   for (int d = 0; d < DIM; d++) {
-    for (int32_t f = sim->mesh->face_begin[d]; f < sim->mesh->face_begin[d + 1];
-         f++) {
-      const int32_t *node = sim->mesh->face_node[f];
+    for (int32_t f = sim->grid.mesh->face_begin[d];
+         f < sim->grid.mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = sim->grid.mesh->face_node[f];
       sim->u_f->v[f] = 0.5 * (sim->u[d]->v[node[0]] + sim->u[d]->v[node[1]]);
     }
   }
-  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open,
+                      sim->u_f->v);
   step_start(sim);
   return sim;
 }
@@ -125,11 +126,11 @@ static inline double largest(const struct two_phase *sim,
                              struct field *const v[DIM]) {
   double most = 0;
   for (int d = 0; d < DIM; d++) {
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       most = larger(most, fabs(v[d]->v[i]));
     }
   }
-  return mesh_max(sim->mesh, most);
+  return mesh_max(sim->grid.mesh, most);
 }
 
 /* Momentum along d, or (d < 0) the mass. */
@@ -137,12 +138,12 @@ static inline double sim_momentum(const struct two_phase *sim, int d) {
   const double grains = sim->params->grains.density;
   const double gas = sim->params->gas.density;
   long double sum = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double rho = gas + sim->c->v[i] * (grains - gas);
-    sum += (long double)rho * mesh_volume(sim->mesh, i) *
+    sum += (long double)rho * mesh_volume(sim->grid.mesh, i) *
            (d < 0 ? 1 : sim->u[d]->v[i]);
   }
-  return mesh_sum(sim->mesh, (double)sum);
+  return mesh_sum(sim->grid.mesh, (double)sum);
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/adapt.h"
+#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -29,7 +30,7 @@ static double distance(const struct mesh *mesh, int32_t i) {
 START_TEST(the_surface_lies_in_a_band_of_the_finest_level) {
   const struct params params = drop_params();
   struct two_phase *sim = two_phase_new(&params);
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double h = 1.0 / (1 << FINE);
   bool band = true, wide = true;
   double coarsest = 0;
@@ -63,17 +64,17 @@ START_TEST(everything_inside_takes_its_level) {
   struct two_phase *sim = two_phase_new(&params);
   bool good = true;
   double deep = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const int level = sim->mesh->level[i];
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const int level = sim->grid.mesh->level[i];
     double x[3] = {0};
-    for (int d = 0; d < DIM; d++) x[d] = sim->mesh->x[i][d];
+    for (int d = 0; d < DIM; d++) x[d] = sim->grid.mesh->x[i][d];
     if (sim->c->v[i] > 1e-6) good = good && level >= FINE - 1;
     if (ball(&body, x) > 10.0 / (1 << FINE)) { /* out of the band */
       good = good && level == FINE - 1;
       deep++;
     }
   }
-  deep = mesh_sum(sim->mesh, deep);
+  deep = mesh_sum(sim->grid.mesh, deep);
   good = all_ranks(good);
   two_phase_destroy(sim);
   ck_assert(good);
@@ -95,10 +96,10 @@ START_TEST(a_function_of_position_sets_the_level) {
                          .function = {left_is_fine, NULL}};
   struct two_phase *sim = two_phase_new(&params);
   bool good = true;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const int level = sim->mesh->level[i];
-    if (sim->mesh->x[i][0] < 0.3) good = good && level == FINE - 1;
-    if (sim->mesh->x[i][0] > 0.7) good = good && level == COARSE;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const int level = sim->grid.mesh->level[i];
+    if (sim->grid.mesh->x[i][0] < 0.3) good = good && level == FINE - 1;
+    if (sim->grid.mesh->x[i][0] > 0.7) good = good && level == COARSE;
   }
   good = all_ranks(good);
   two_phase_destroy(sim);
@@ -120,11 +121,11 @@ START_TEST(the_estimate_finds_a_jump_of_velocity) {
   params.criterion[params.ncriteria++] = (struct criterion){
       .type = CRITERION_ESTIMATE, .level = FINE, .threshold = 0.02};
   struct two_phase *sim = two_phase_new(&params);
-  bool good = sim->mesh->level_finest == FINE;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double away = fabs(sim->mesh->x[i][0] - 0.5);
-    if (away < 0.02) good = good && sim->mesh->level[i] == FINE;
-    if (away > 0.3) good = good && sim->mesh->level[i] == COARSE + 1;
+  bool good = sim->grid.mesh->level_finest == FINE;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double away = fabs(sim->grid.mesh->x[i][0] - 0.5);
+    if (away < 0.02) good = good && sim->grid.mesh->level[i] == FINE;
+    if (away > 0.3) good = good && sim->grid.mesh->level[i] == COARSE + 1;
   }
   good = all_ranks(good);
   two_phase_destroy(sim);
@@ -150,7 +151,7 @@ START_TEST(a_criterion_is_confined_to_a_phase) {
                          .level = FINE,
                          .threshold = 0.02};
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double inside = 0, outside = 0, coarse = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double c = sim->c->v[i], away = fabs(mesh->x[i][0] - 0.5);
@@ -165,7 +166,7 @@ START_TEST(a_criterion_is_confined_to_a_phase) {
   }
   inside = mesh_sum(mesh, inside), coarse = mesh_sum(mesh, coarse);
   outside = mesh_sum(mesh, outside);
-  const bool changed = adapt_grid(sim);
+  const bool changed = two_phase_adapt(sim);
   two_phase_destroy(sim);
   ck_assert_double_gt(inside, 0);
   ck_assert_double_eq(coarse, 0);
@@ -197,15 +198,15 @@ START_TEST(the_cap_is_respected) {
   double over = 0;
   int n = 0;
   struct forest_layout layout;
-  two_phase_layout(&params, &layout);
+  grid_layout(&params, &layout);
   for (int part = -1; part < n; part++) {
     if (part >= 0) params.max_cells = size[part] - 1;
     struct two_phase *sim =
         two_phase_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
     for (int k = 0; k < MOST; k++) {
       sim_fill(sim);
-      if (!adapt_grid(sim)) break;
-      const int64_t leaves = forest_nleaves_global(sim->forest);
+      if (!two_phase_adapt(sim)) break;
+      const int64_t leaves = forest_nleaves_global(sim->grid.forest);
       if (part < 0) size[n++] = leaves;
       over = fmax(over, (double)leaves / (double)params.max_cells);
     }
@@ -223,7 +224,7 @@ START_TEST(a_second_adaptation_changes_nothing) {
         (struct criterion){.type = CRITERION_INSIDE, .level = FINE - 1};
   }
   struct two_phase *sim = two_phase_new(&params);
-  const bool changed = adapt_grid(sim);
+  const bool changed = two_phase_adapt(sim);
   two_phase_destroy(sim);
   ck_assert(!changed);
 }
@@ -236,7 +237,7 @@ static double drift(int d, const double x[3]) {
 
 /* Move the grains by `leaves` of the finest along a diagonal. */
 static void move(struct two_phase *sim, double leaves) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double *normal[DIM];
   field_arrays(sim->normal, normal);
   fill_faces(mesh, drift, sim->u_f->v);
@@ -263,25 +264,25 @@ static void move(struct two_phase *sim, double leaves) {
 START_TEST(the_band_follows_the_surface) {
   const struct params params = drop_params();
   struct two_phase *sim = two_phase_new(&params);
-  const double volume = integral(sim->mesh, sim->c->v);
-  const double before = (double)forest_nleaves_global(sim->forest);
+  const double volume = integral(sim->grid.mesh, sim->c->v);
+  const double before = (double)forest_nleaves_global(sim->grid.forest);
   int rounds = 0;
   for (int k = 0; k < 8; k++) {
     move(sim, 1);
     int n = 0;
-    while (n < 20 && adapt_grid(sim)) n++;
+    while (n < 20 && two_phase_adapt(sim)) n++;
     if (n > rounds) rounds = n;
   }
   bool band = true;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double c = sim->c->v[i];
     if (c > 1e-6 && c < 1 - 1e-6) {
-      band = band && sim->mesh->level[i] == FINE;
+      band = band && sim->grid.mesh->level[i] == FINE;
     }
   }
   band = all_ranks(band);
-  const double after = (double)forest_nleaves_global(sim->forest);
-  const double drifted = integral(sim->mesh, sim->c->v);
+  const double after = (double)forest_nleaves_global(sim->grid.forest);
+  const double drifted = integral(sim->grid.mesh, sim->c->v);
   two_phase_destroy(sim);
   ck_assert(band);
   ck_assert_int_le(rounds, FINE - COARSE + 1); /* a level at a time */
@@ -301,8 +302,8 @@ START_TEST(a_trembling_surface_leaves_the_grid_alone) {
     struct body body = drop;
     for (int d = 0; d < DIM; d++) body.centre[d] += 0.5 * (k & 1) / (1 << FINE);
     for (int n = 0; n < 20; n++) {
-      fill_shape(sim->mesh, ball, &body, sim->c->v);
-      if (!adapt_grid(sim)) break;
+      fill_shape(sim->grid.mesh, ball, &body, sim->c->v);
+      if (!two_phase_adapt(sim)) break;
       changed = changed || k > 2;
     }
   }

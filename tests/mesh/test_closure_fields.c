@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fields for output: shear rate and what the closure knows of the grains. */
 #include "talus/two_phase/closure_fields.h"
+#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -22,8 +23,8 @@ static struct rheology lee_huang(void) {
 /* Grains in plane shear below gas that shears a hundred times faster, at one
  * pressure. */
 static void set_shear(struct two_phase *sim) {
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double z = sim->mesh->x[i][DIM - 1];
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double z = sim->grid.mesh->x[i][DIM - 1];
     sim->u[0]->v[i] = RATE * (z + 99 * fmax(z - height, 0));
     sim->p->v[i] = PRESSURE;
   }
@@ -33,7 +34,8 @@ static void set_shear(struct two_phase *sim) {
 static bool is_inside(const struct two_phase *sim, int32_t i) {
   bool inside = true;
   for (int d = 0; d < DIM; d++) {
-    inside = inside && fabs(sim->mesh->x[i][d] - 0.5) < 0.5 - sim->mesh->h[i];
+    inside = inside &&
+             fabs(sim->grid.mesh->x[i][d] - 0.5) < 0.5 - sim->grid.mesh->h[i];
   }
   return inside;
 }
@@ -48,7 +50,7 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
   double wrong_rate = 0, wrong[8] = {0}, gas = 0, cells = 0;
   set_shear(sim);
   closure_fields_update(sim);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const bool grains = sim->c->v[i] > 0.5;
     for (int k = 0; k < n && !grains; k++) gas += fabs(sim->known[k]->v[i]);
     if (!grains || !is_inside(sim, i)) continue;
@@ -61,10 +63,10 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
     }
   }
   closure_fields_release(sim);
-  cells = mesh_sum(sim->mesh, cells);
-  gas = mesh_sum(sim->mesh, gas);
-  wrong_rate = mesh_max(sim->mesh, wrong_rate);
-  for (int k = 0; k < n; k++) wrong[k] = mesh_max(sim->mesh, wrong[k]);
+  cells = mesh_sum(sim->grid.mesh, cells);
+  gas = mesh_sum(sim->grid.mesh, gas);
+  wrong_rate = mesh_max(sim->grid.mesh, wrong_rate);
+  for (int k = 0; k < n; k++) wrong[k] = mesh_max(sim->grid.mesh, wrong[k]);
   two_phase_destroy(sim);
   rheology_release(&params.grains.rheology);
   ck_assert_int_eq(n, 4);

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Droplets, outline, energies: against what is known exactly. */
+#include "talus/remap.h"
 #include "talus/two_phase/measure.h"
+#include "talus/two_phase/start.h"
+#include "talus/vof.h"
 
 #include <check.h>
 #include <math.h>
@@ -250,18 +253,18 @@ static struct two_phase *state_new(struct world *w, struct params *params) {
   struct two_phase *sim = MEM_NEW(struct two_phase, 1);
   params->grains.density = 2;
   sim->params = params;
-  sim->forest = w->forest;
-  sim->mesh = w->mesh;
-  sim->c = fields_add(&sim->fields, w->mesh, "c", "1", "fraction", FIELD_CELL,
-                      REMAP_VOF);
+  sim->grid.forest = w->forest;
+  sim->grid.mesh = w->mesh;
+  sim->c = fields_add(&sim->grid.fields, w->mesh, "c", "1", "fraction",
+                      FIELD_CELL, &vof_rule);
   for (int d = 0; d < DIM; d++)
-    sim->u[d] = fields_add(&sim->fields, w->mesh, name[d], "m/s", "velocity",
-                           FIELD_CELL, REMAP_LINEAR);
+    sim->u[d] = fields_add(&sim->grid.fields, w->mesh, name[d], "m/s",
+                           "velocity", FIELD_CELL, &remap_linear);
   return sim;
 }
 
 static void state_destroy(struct two_phase *sim) {
-  fields_destroy(&sim->fields);
+  fields_destroy(&sim->grid.fields);
   mem_free(sim);
 }
 
@@ -369,8 +372,8 @@ START_TEST(layers_add_up_to_the_heap) {
   struct diagnostics d;
   double apart[2] = {0}, gap = 0, volume = 0, moved = 0;
   for (int k = 0; k < 24; k++) step_advance(sim, 1);
-  double *before = MEM_NEW(double, (size_t)sim->mesh->nleaves);
-  const size_t bytes = (size_t)sim->mesh->nleaves * sizeof(double);
+  double *before = MEM_NEW(double, (size_t)sim->grid.mesh->nleaves);
+  const size_t bytes = (size_t)sim->grid.mesh->nleaves * sizeof(double);
   memcpy(before, sim->tracer[2]->v, bytes);
   fractions_synchronise(sim);
   diagnostics_measure(sim, &d);
@@ -383,9 +386,9 @@ START_TEST(layers_add_up_to_the_heap) {
     gap += fabs(d.layer[2][i] + d.layer[3][i] - height);
     volume += height;
   }
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++)
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
     moved = fmax(moved, fabs(sim->tracer[2]->v[i] - before[i]));
-  moved = mesh_max(sim->mesh, moved);
+  moved = mesh_max(sim->grid.mesh, moved);
   const double front = d.front, row = d.outline.spacing / 0.4;
   diagnostics_free(&d);
   mem_free(before);

@@ -6,6 +6,7 @@
 
 #include "sim.h"
 #include "talus/error.h"
+#include "talus/two_phase/start.h"
 
 /* Grains and a tracer in a corner of the box. */
 static struct params state_params(void) {
@@ -20,13 +21,13 @@ static struct params state_params(void) {
 
 static bool is_seen(struct field *field, struct two_phase *sim, double value) {
   const bool cells = field->location == FIELD_CELL;
-  const int32_t n = cells ? sim->mesh->nleaves : sim->mesh->nfaces;
+  const int32_t n = cells ? sim->grid.mesh->nleaves : sim->grid.mesh->nfaces;
   const double before = field->v[n / 2];
   if (base_rank() == base_size() - 1) field->v[n / 2] = value;
-  const char *name = fields_not_finite(&sim->fields, sim->mesh);
+  const char *name = fields_not_finite(&sim->grid.fields, sim->grid.mesh);
   const bool seen = name != NULL && strcmp(name, field->name) == 0;
   field->v[n / 2] = before;
-  return seen && fields_not_finite(&sim->fields, sim->mesh) == NULL;
+  return seen && fields_not_finite(&sim->grid.fields, sim->grid.mesh) == NULL;
 }
 
 START_TEST(every_field_of_the_state_is_looked_at) {
@@ -35,9 +36,9 @@ START_TEST(every_field_of_the_state_is_looked_at) {
   struct two_phase *sim = two_phase_new(&p);
   bool good = step_advance(sim, 1) == EXIT_DONE;
   int n = 0;
-  for (int k = 0; k < sim->fields.n; k++) {
-    struct field *field = sim->fields.field[k];
-    if (field->remap == REMAP_NONE) continue;
+  for (int k = 0; k < sim->grid.fields.n; k++) {
+    struct field *field = sim->grid.fields.field[k];
+    if (!field->rule) continue;
     good = good && is_seen(field, sim, WILD[n++ % 3]);
   }
   two_phase_destroy(sim);

@@ -14,6 +14,7 @@
 #include "talus/hdf5_file.h"
 #include "talus/output.h"
 #include "talus/progress.h"
+#include "talus/remap.h"
 #include "talus/snapshot.h"
 
 static char directory[64]; /* of this test, the same on all ranks */
@@ -163,11 +164,13 @@ static double value_at(const double x[DIM], int which) {
 }
 
 static void add_fields(struct fields *fields, const struct mesh *mesh) {
-  fields_add(fields, mesh, "a", "m/s", "a cell field", FIELD_CELL, REMAP_LINEAR)
+  fields_add(fields, mesh, "a", "m/s", "a cell field", FIELD_CELL,
+             &remap_linear)
       ->restart = true;
-  fields_add(fields, mesh, "u_f", "m/s", "a face field", FIELD_FACE, REMAP_FACE)
+  fields_add(fields, mesh, "u_f", "m/s", "a face field", FIELD_FACE,
+             &remap_faces)
       ->restart = true;
-  fields_add(fields, mesh, "scratch", "1", "not kept", FIELD_CELL, REMAP_NONE);
+  fields_add(fields, mesh, "scratch", "1", "not kept", FIELD_CELL, NULL);
 }
 
 /* Centre of a face, from its owner, so that all ranks agree on every bit. */
@@ -363,13 +366,13 @@ static void add_vector(struct fields *fields, const struct mesh *mesh) {
   static const char *const name[] = {"u_x", "u_y", "u_z"};
   for (int d = 0; d < DIM; d++) {
     struct field *u = fields_add(fields, mesh, name[d], "m/s", "velocity",
-                                 FIELD_CELL, REMAP_LINEAR);
+                                 FIELD_CELL, &remap_linear);
     u->output = true;
     u->component = d;
     for (int32_t i = 0; i < mesh->nleaves; i++) u->v[i] = d + 1;
   }
-  struct field *eta = fields_add(fields, mesh, "eta_f", "Pa s", "viscosity",
-                                 FIELD_FACE, REMAP_NONE);
+  struct field *eta =
+      fields_add(fields, mesh, "eta_f", "Pa s", "viscosity", FIELD_FACE, NULL);
   eta->output = true;
   for (int32_t f = 0; f < mesh->nfaces; f++) eta->v[f] = 2.5;
 }

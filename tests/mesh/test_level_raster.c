@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/level_raster.h"
+#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -29,14 +30,15 @@ START_TEST(criterion_of_position_misses_nothing) {
                          .function = {spot, &depth[_i]}};
   struct two_phase *sim = two_phase_new(&params);
   double found = 0, coarsest = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     double x[3] = {0};
-    for (int d = 0; d < DIM; d++) x[d] = sim->mesh->x[i][d];
-    if (spot(depth, x) > 0 && sim->mesh->level[i] == FINE) found = 1;
-    coarsest = fmax(coarsest, sim->mesh->h[i]);
+    for (int d = 0; d < DIM; d++) x[d] = sim->grid.mesh->x[i][d];
+    if (spot(depth, x) > 0 && sim->grid.mesh->level[i] == FINE) found = 1;
+    coarsest = fmax(coarsest, sim->grid.mesh->h[i]);
   }
-  found = mesh_max(sim->mesh, found), coarsest = mesh_max(sim->mesh, coarsest);
-  const bool changed = adapt_grid(sim);
+  found = mesh_max(sim->grid.mesh, found),
+  coarsest = mesh_max(sim->grid.mesh, coarsest);
+  const bool changed = two_phase_adapt(sim);
   two_phase_destroy(sim);
   ck_assert(found > 0);
   ck_assert(!changed);

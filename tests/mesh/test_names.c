@@ -9,12 +9,12 @@
 
 static bool all_are_taken(const struct params *params) {
   struct forest_layout layout;
-  two_phase_layout(params, &layout);
+  grid_layout(params, &layout);
   struct two_phase *sim =
       two_phase_new_on(params, forest_new(MPI_COMM_WORLD, &layout, 1));
   bool good = true;
-  for (int k = 0; k < sim->fields.n; k++) {
-    const char *name = sim->fields.field[k]->name;
+  for (int k = 0; k < sim->grid.fields.n; k++) {
+    const char *name = sim->grid.fields.field[k]->name;
     const bool tracer = strcmp(name, params->tracer[0].name) == 0;
     if (case_name_is_taken(name) != tracer) continue;
     fprintf(stderr, "a tracer may%s be called %s\n", tracer ? " not" : "",

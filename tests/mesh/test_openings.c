@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/openings.h"
+#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -74,14 +75,14 @@ static double area_of(const struct opening *opening) {
 
 /* Flux through the top into the box, of c as well if it is given. */
 static double inflow_of(struct two_phase *sim, bool grains) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double sum = 0;
   field_fill(mesh, sim->c);
   field_fill_many(mesh, DIM, sim->u);
   for (int32_t f = mesh->face_begin[DIM - 1]; f < mesh->nfaces; f++) {
     const int32_t *node = mesh->face_node[f];
     const double *u = sim->u[DIM - 1]->v, *c = sim->c->v;
-    if (mesh->face_patch[f] < FIRST || !sim->closed[mesh->face_patch[f]]) {
+    if (mesh->face_patch[f] < FIRST || !sim->grid.closed[mesh->face_patch[f]]) {
       continue;
     }
     sum -= 0.5 * (u[node[0]] + u[node[1]]) * pow(mesh->face_h[f], DIM - 1) *
@@ -104,10 +105,10 @@ START_TEST(what_flows_in_is_speed_times_area) {
   follow(&params);
   for (int k = 0; k < 2; k++) {
     struct forest_layout layout;
-    two_phase_layout(&params, &layout);
+    grid_layout(&params, &layout);
     struct two_phase *sim = two_phase_new_on(
         &params, forest_new(MPI_COMM_WORLD, &layout, COARSE + 1));
-    for (int n = 0; k == 1 && n < 20 && adapt_grid(sim);) n++;
+    for (int n = 0; k == 1 && n < 20 && two_phase_adapt(sim);) n++;
     flux[k] = inflow_of(sim, true);
     two_phase_destroy(sim);
   }
@@ -133,7 +134,7 @@ START_TEST(volume_is_that_of_the_jet) {
   for (int k = 0; k < 8; k++) {
     good = good && step_advance(sim, 1) == EXIT_DONE;
   }
-  const double volume = integral(sim->mesh, sim->c->v);
+  const double volume = integral(sim->grid.mesh, sim->c->v);
   const double time = sim->time - 0.5 * sim->dt;
   two_phase_destroy(sim);
   side_map_destroy(opening.map);
@@ -152,7 +153,7 @@ START_TEST(two_inflows_share_a_face) {
   params.boundary[SECOND].velocity[DIM - 1] = -3 * SPEED;
   params.boundary[SECOND].fraction = 0;
   struct forest_layout layout;
-  two_phase_layout(&params, &layout);
+  grid_layout(&params, &layout);
   struct two_phase *sim =
       two_phase_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
   const double all = inflow_of(sim, false), grains = inflow_of(sim, true);
@@ -173,23 +174,24 @@ START_TEST(narrow_outlet_is_on_the_finest_level) {
       opening_params(&opening, BOUNDARY_OUTFLOW, BOUNDARY_SLIP);
   follow(&params);
   struct forest_layout layout;
-  two_phase_layout(&params, &layout);
+  grid_layout(&params, &layout);
   struct two_phase *sim =
       two_phase_new_on(&params, forest_new(MPI_COMM_WORLD, &layout, COARSE));
-  const bool before = sim->pressure_set;
-  openings_refine(sim);
-  const struct mesh *mesh = sim->mesh;
+  const bool before = sim->grid.pressure_set;
+  two_phase_refine_openings(sim);
+  const struct mesh *mesh = sim->grid.mesh;
   double area = 0, coarsest = 0;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
-    if (patch < 0 || !sim->open[patch]) continue;
+    if (patch < 0 || !sim->grid.open[patch]) continue;
     area += pow(mesh->face_h[f], DIM - 1);
     coarsest = fmax(coarsest, mesh->face_h[f]);
   }
   area = mesh_sum(mesh, area), coarsest = mesh_max(mesh, coarsest);
-  const bool after = sim->pressure_set, fine = openings_are_fine(sim);
-  const bool changed = adapt_grid(sim);
-  const double cells = (double)forest_nleaves_global(sim->forest);
+  const bool after = sim->grid.pressure_set,
+             fine = openings_are_fine(&sim->grid);
+  const bool changed = two_phase_adapt(sim);
+  const double cells = (double)forest_nleaves_global(sim->grid.forest);
   two_phase_destroy(sim);
   side_map_destroy(opening.map);
   ck_assert(!before);
@@ -210,12 +212,12 @@ START_TEST(large_opening_is_fine_at_its_ends) {
       opening_params(&opening, BOUNDARY_INFLOW, BOUNDARY_OUTFLOW);
   follow(&params);
   struct two_phase *sim = two_phase_new(&params);
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double coarsest[2] = {0};
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
     if (patch < FIRST) continue;
-    double *most = &coarsest[sim->open[patch]];
+    double *most = &coarsest[sim->grid.open[patch]];
     *most = fmax(*most, mesh->face_h[f]);
   }
   for (int k = 0; k < 2; k++) coarsest[k] = mesh_max(mesh, coarsest[k]);

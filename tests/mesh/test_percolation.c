@@ -59,32 +59,32 @@ struct effect {
 
 static double gas_below(const struct two_phase *sim) {
   double sum = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    if (sim->mesh->x[i][DIM - 1] > 0.45) continue;
-    sum += (1 - sim->c->v[i]) * mesh_volume(sim->mesh, i);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    if (sim->grid.mesh->x[i][DIM - 1] > 0.45) continue;
+    sum += (1 - sim->c->v[i]) * mesh_volume(sim->grid.mesh, i);
   }
-  return mesh_sum(sim->mesh, sum);
+  return mesh_sum(sim->grid.mesh, sum);
 }
 
 static struct effect percolate(const struct params *params, int calls,
                                double dt) {
   struct two_phase *sim = sim_new(params, MPI_COMM_WORLD);
   struct effect effect = {.gas = {gas_below(sim)}};
-  const double volume = integral(sim->mesh, sim->c->v);
-  double *start = MEM_NEW(double, sim->mesh->nleaves);
-  memcpy(start, sim->c->v, (size_t)sim->mesh->nleaves * sizeof *start);
+  const double volume = integral(sim->grid.mesh, sim->c->v);
+  double *start = MEM_NEW(double, sim->grid.mesh->nleaves);
+  memcpy(start, sim->c->v, (size_t)sim->grid.mesh->nleaves * sizeof *start);
   for (int k = 0; k < calls; k++) {
     percolation_advance(sim, dt);
     sim->step++;
-    effect.excess = fmax(effect.excess, vof_excess(sim->mesh, sim->c->v));
+    effect.excess = fmax(effect.excess, vof_excess(sim->grid.mesh, sim->c->v));
   }
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     effect.moved = fmax(effect.moved, fabs(sim->c->v[i] - start[i]));
   }
-  effect.excess = mesh_max(sim->mesh, effect.excess);
-  effect.moved = mesh_max(sim->mesh, effect.moved);
+  effect.excess = mesh_max(sim->grid.mesh, effect.excess);
+  effect.moved = mesh_max(sim->grid.mesh, effect.moved);
   effect.gas[1] = gas_below(sim);
-  effect.drift = fabs(integral(sim->mesh, sim->c->v) - volume) / volume;
+  effect.drift = fabs(integral(sim->grid.mesh, sim->c->v) - volume) / volume;
   effect.passed = sim->percolation.volume;
   effect.work = sim->energy.dissipated;
   mem_free(start);

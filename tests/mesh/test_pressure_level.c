@@ -2,6 +2,7 @@
 /* A closed box behaves as one that is open on top, in pressure at rest and in
  * what friction makes of a column that collapses. */
 #include "talus/two_phase/pressure_level.h"
+#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -28,13 +29,13 @@ static struct params still_params(bool closed) {
  * top; inside leaves that hold one phase. */
 static double error_of_weight(const struct two_phase *sim, double level) {
   double most = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double z = sim->mesh->x[i][DIM - 1], c = sim->c->v[i];
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double z = sim->grid.mesh->x[i][DIM - 1], c = sim->c->v[i];
     const double gas = 1e-3 * (1 - fmax(z, height));
     if (c > 0 && c < 1) continue;
     most = fmax(most, fabs(sim->p->v[i] - level - gas - fmax(height - z, 0)));
   }
-  return mesh_max(sim->mesh, most);
+  return mesh_max(sim->grid.mesh, most);
 }
 
 START_TEST(gas_in_a_closed_box_has_the_pressure_of_an_open_one) {
@@ -84,7 +85,7 @@ START_TEST(without_gas_the_mean_of_the_box_is_taken) {
   params.shape.context = &full;
   params.pressure_level = 3;
   struct two_phase *sim = two_phase_new(&params);
-  const double mean = integral(sim->mesh, sim->p->v);
+  const double mean = integral(sim->grid.mesh, sim->p->v);
   two_phase_destroy(sim);
   ck_assert_double_eq_tol(mean, 3, 1e-10);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/projection.h"
+#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -87,7 +88,7 @@ START_TEST(a_flat_bed_feels_no_acceleration) {
   struct two_phase *sim = two_phase_new(&bed.params);
   const double most = largest(sim, sim->g);
   const bool jumps =
-      forest_nleaves_global(sim->forest) < 1 << DIM * bed.params.level_max;
+      forest_nleaves_global(sim->grid.forest) < 1 << DIM * bed.params.level_max;
   two_phase_destroy(sim);
   ck_assert(jumps == (_i & 1));
   /* of g = 1: the residual of 1e-13 / h, added up over the box. The solve may
@@ -104,13 +105,13 @@ START_TEST(pressure_is_the_weight_above) {
   struct two_phase *sim = two_phase_new(&bed.params);
   const double grains = 1, gas = 1e-3;
   double most = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double z = sim->mesh->x[i][DIM - 1], h = sim->mesh->h[i];
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double z = sim->grid.mesh->x[i][DIM - 1], h = sim->grid.mesh->h[i];
     if (fabs(z - surface) < h) continue; /* centres next to the surface */
     const double exact = gas * (1 - z) + (grains - gas) * fmax(surface - z, 0);
     most = fmax(most, fabs(sim->p->v[i] - exact));
   }
-  most = mesh_max(sim->mesh, most);
+  most = mesh_max(sim->grid.mesh, most);
   two_phase_destroy(sim);
   ck_assert_double_le(most, 1e-11);
 }

@@ -27,20 +27,21 @@ static struct two_phase *state_new(const struct params *params, int base,
                                    int level) {
   struct two_phase *sim =
       two_phase_new_on(params, grid_new(MPI_COMM_WORLD, 1, false, base, level));
-  fill_shape(sim->mesh, ball, &off_centre, sim->c->v);
-  fill_cells(sim->mesh, wavy, sim->u);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    sim->p->v[i] = linear(sim->mesh->x[i]);
+  fill_shape(sim->grid.mesh, ball, &off_centre, sim->c->v);
+  fill_cells(sim->grid.mesh, wavy, sim->u);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    sim->p->v[i] = linear(sim->grid.mesh->x[i]);
   }
-  fill_faces(sim->mesh, vortex, sim->u_f->v);
-  clean_face_velocity(sim->clean, sim->mesh, sim->open, sim->u_f->v);
+  fill_faces(sim->grid.mesh, vortex, sim->u_f->v);
+  clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open,
+                      sim->u_f->v);
   return sim;
 }
 
 /* Divide and merge in patches that move with `round`; whole families are of
  * one mind. The patches lie on one side, so that leaves change ranks. */
 static void change_grid(struct two_phase *sim, int round, int level_max) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   int8_t *flag = MEM_NEW(int8_t, mesh->nleaves);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double parent = 2 * mesh->h[i];
@@ -51,8 +52,8 @@ static void change_grid(struct two_phase *sim, int round, int level_max) {
     flag[i] = (int8_t)(sin(2 * sum) > 0.3) - (int8_t)(sin(2 * sum) < -0.3);
   }
   struct forest_map map;
-  if (forest_adapt(sim->forest, flag, 1, level_max, &map)) {
-    remap_fields(sim, &map);
+  if (forest_adapt(sim->grid.forest, flag, 1, level_max, &map)) {
+    remap_fields(&sim->grid, &map);
   }
   forest_map_destroy(&map);
   mem_free(flag);
@@ -60,11 +61,11 @@ static void change_grid(struct two_phase *sim, int round, int level_max) {
 
 /* Divide (1) or merge (-1) everything once. */
 static void change_all(struct two_phase *sim, int8_t how) {
-  int8_t *flag = MEM_NEW(int8_t, sim->mesh->nleaves);
+  int8_t *flag = MEM_NEW(int8_t, sim->grid.mesh->nleaves);
   struct forest_map map;
-  memset(flag, how, (size_t)sim->mesh->nleaves);
-  forest_adapt(sim->forest, flag, 0, 8, &map);
-  remap_fields(sim, &map);
+  memset(flag, how, (size_t)sim->grid.mesh->nleaves);
+  forest_adapt(sim->grid.forest, flag, 0, 8, &map);
+  remap_fields(&sim->grid, &map);
   forest_map_destroy(&map);
   mem_free(flag);
 }
@@ -74,25 +75,25 @@ enum { ROUNDS = 6, FINEST = DIM == 2 ? 6 : 5 };
 START_TEST(volume_and_momentum_are_conserved) {
   const struct params params = box_params(5);
   struct two_phase *sim = state_new(&params, 2, FINEST - 1);
-  const double volume = integral(sim->mesh, sim->c->v);
+  const double volume = integral(sim->grid.mesh, sim->c->v);
   const double mass = sim_momentum(sim, -1);
   double before[DIM], lost = 0, drift = 0, excess = 0;
   int64_t fewest = INT64_MAX, greatest = 0;
   for (int d = 0; d < DIM; d++) before[d] = sim_momentum(sim, d);
   for (int round = 0; round < ROUNDS; round++) {
     change_grid(sim, round, FINEST);
-    drift = fmax(drift, fabs(integral(sim->mesh, sim->c->v) / volume - 1));
+    drift = fmax(drift, fabs(integral(sim->grid.mesh, sim->c->v) / volume - 1));
     for (int d = 0; d < DIM; d++) {
       lost = fmax(lost, fabs(sim_momentum(sim, d) - before[d]) / mass);
     }
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       excess = fmax(excess, fmax(-sim->c->v[i], sim->c->v[i] - 1));
     }
-    const int64_t n = forest_nleaves_global(sim->forest);
+    const int64_t n = forest_nleaves_global(sim->grid.forest);
     if (n < fewest) fewest = n;
     if (n > greatest) greatest = n;
   }
-  excess = mesh_max(sim->mesh, excess);
+  excess = mesh_max(sim->grid.mesh, excess);
   two_phase_destroy(sim);
   ck_assert_int_gt(greatest, fewest); /* the grid did change */
   /* round-off, of random sign over a thousand cells */
@@ -108,11 +109,11 @@ START_TEST(a_linear_pressure_stays_so) {
   double most = 0;
   for (int round = 0; round < ROUNDS; round++) {
     change_grid(sim, round, FINEST);
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-      most = fmax(most, fabs(sim->p->v[i] - linear(sim->mesh->x[i])));
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+      most = fmax(most, fabs(sim->p->v[i] - linear(sim->grid.mesh->x[i])));
     }
   }
-  most = mesh_max(sim->mesh, most);
+  most = mesh_max(sim->grid.mesh, most);
   two_phase_destroy(sim);
   ck_assert_double_le(most, 1e-14);
 }
@@ -130,19 +131,19 @@ START_TEST(dividing_and_merging_back_changes_nothing) {
   int32_t size = 1;
   for (int d = 0; d < DIM; d++) size *= 2 << LEVEL;
   for (int k = 0; k < DIM + 2; k++) {
-    before[k] = paint(sim->mesh, field[k]->v, LEVEL);
+    before[k] = paint(sim->grid.mesh, field[k]->v, LEVEL);
   }
   change_all(sim, 1);
   change_all(sim, -1);
   for (int k = 0; k < DIM + 2; k++) {
-    after[k] = paint(sim->mesh, field[k]->v, LEVEL);
+    after[k] = paint(sim->grid.mesh, field[k]->v, LEVEL);
     for (int32_t i = 0; i < size; i++) {
       most = fmax(most, fabs(after[k][i] - before[k][i]));
     }
     mem_free(before[k]);
     mem_free(after[k]);
   }
-  const int64_t n = forest_nleaves_global(sim->forest);
+  const int64_t n = forest_nleaves_global(sim->grid.forest);
   two_phase_destroy(sim);
   ck_assert_int_eq(n, 1 << DIM * LEVEL);
   ck_assert_double_le(most, 1e-14);
@@ -160,12 +161,12 @@ START_TEST(children_are_cut_by_the_plane_of_their_parent) {
   double most = 0;
   sim_fill(sim);
   change_all(sim, 1);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double h = sim->mesh->h[i];
-    const double depth = (height - sim->mesh->x[i][DIM - 1]) / h + 0.5;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double h = sim->grid.mesh->h[i];
+    const double depth = (height - sim->grid.mesh->x[i][DIM - 1]) / h + 0.5;
     most = fmax(most, fabs(sim->c->v[i] - fmin(fmax(depth, 0), 1)));
   }
-  most = mesh_max(sim->mesh, most);
+  most = mesh_max(sim->grid.mesh, most);
   two_phase_destroy(sim);
   ck_assert_double_le(most, 1e-13);
 }
@@ -177,12 +178,12 @@ START_TEST(face_velocities_stay_solenoidal) {
   enum { LEVEL = 4 };
   const struct params params = box_params(LEVEL);
   struct two_phase *sim = state_new(&params, LEVEL, LEVEL);
-  double most = clean_divergence(sim->mesh, sim->u_f->v);
+  double most = clean_divergence(sim->grid.mesh, sim->u_f->v);
   change_grid(sim, 0, LEVEL + 1);
-  most = fmax(most, clean_divergence(sim->mesh, sim->u_f->v));
-  const bool jumps = forest_nleaves_global(sim->forest) > 1 << DIM * LEVEL;
+  most = fmax(most, clean_divergence(sim->grid.mesh, sim->u_f->v));
+  const bool jumps = forest_nleaves_global(sim->grid.forest) > 1 << DIM * LEVEL;
   change_all(sim, -1);
-  most = fmax(most, clean_divergence(sim->mesh, sim->u_f->v));
+  most = fmax(most, clean_divergence(sim->grid.mesh, sim->u_f->v));
   two_phase_destroy(sim);
   ck_assert(jumps);
   ck_assert_double_le(most, 1e-15 * (2 << LEVEL) * 4); /* of u / h */
@@ -199,7 +200,7 @@ START_TEST(leaves_that_stay_keep_their_sides) {
   int32_t size = 1;
   for (int d = 0; d < DIM; d++) size *= 2 << LEVEL;
   for (int k = 0; k < 2; k++) {
-    const struct mesh *mesh = sim->mesh;
+    const struct mesh *mesh = sim->grid.mesh;
     double *v = MEM_NEW(double, mesh->nleaves);
     for (int f = 0; f <= NFACE; f++) {
       for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -213,8 +214,8 @@ START_TEST(leaves_that_stay_keep_their_sides) {
     int8_t *flag = MEM_NEW(int8_t, mesh->nleaves);
     struct forest_map map;
     memset(flag, 1, (size_t)mesh->nleaves); /* all that are not yet finest */
-    forest_adapt(sim->forest, flag, 0, LEVEL, &map);
-    remap_fields(sim, &map);
+    forest_adapt(sim->grid.forest, flag, 0, LEVEL, &map);
+    remap_fields(&sim->grid, &map);
     forest_map_destroy(&map);
     mem_free(flag);
   }
@@ -245,7 +246,7 @@ START_TEST(face_velocities_stay_accurate) {
     struct two_phase *sim = state_new(&params, level - 1, level);
     const struct mesh *mesh;
     change_all(sim, 1);
-    mesh = sim->mesh;
+    mesh = sim->grid.mesh;
     error[k] = 0;
     for (int d = 0; d < DIM; d++) {
       for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {

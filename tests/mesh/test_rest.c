@@ -9,7 +9,7 @@ Suite *rest_suite(void);
 
 /* One leaf, of the last rank, has fraction c and speed u. */
 static void set_one(struct two_phase *sim, double c, double u) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const bool here = mesh->rank == mesh->nranks - 1 && i == 0;
     sim->c->v[i] = here ? c : 1;

@@ -10,6 +10,7 @@
 #include "grid.h"
 #include "talus/checkpoint.h"
 #include "talus/field.h"
+#include "talus/remap.h"
 #include "talus/seal.h"
 
 enum { DAMAGES = 200, PAGE = 4096 };
@@ -53,7 +54,7 @@ static void write_checkpoint(void) {
   double time = 1.0 / 3;
   struct checkpoint_scalar scalars[] = {{"time", &time, NULL, 0, 1}};
   struct field *field = fields_add(&fields, mesh, "a", "m/s", "a field",
-                                   FIELD_CELL, REMAP_LINEAR);
+                                   FIELD_CELL, &remap_linear);
   field->restart = true;
   for (int32_t i = 0; i < mesh->nleaves; i++)
     field->v[i] = sin(7 * mesh->x[i][0]);

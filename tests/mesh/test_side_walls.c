@@ -8,6 +8,7 @@
  * per mass: sliding, the plug gains g sin(alpha) - F, and if that is negative
  * it stops after u_0/(F - g sin(alpha)) and stays. */
 #include "talus/side_walls.h"
+#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -43,12 +44,12 @@ static struct params plug_params(double friction, bool moves) {
 
 /* Mean of u_x, and how far the leaves are from it. */
 static double plug_speed(const struct two_phase *sim, double *spread) {
-  const double mean = integral(sim->mesh, sim->u[0]->v);
+  const double mean = integral(sim->grid.mesh, sim->u[0]->v);
   double most = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     most = fmax(most, fabs(sim->u[0]->v[i] - mean));
   }
-  *spread = mesh_max(sim->mesh, most);
+  *spread = mesh_max(sim->grid.mesh, most);
   return mean;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole time steps. */
+#include "talus/two_phase/start.h"
 #include "talus/two_phase/step.h"
 
 #include <check.h>
@@ -31,10 +32,10 @@ START_TEST(a_flat_bed_stays_still) {
   if (_i & 2) params.boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
   if (_i & 4) params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
   struct two_phase *sim = two_phase_new(&params);
-  const double volume = integral(sim->mesh, sim->c->v);
+  const double volume = integral(sim->grid.mesh, sim->c->v);
   const bool done = advance(sim, 15, 0.05);
   const double cells = largest(sim, sim->u);
-  const double drift = fabs(integral(sim->mesh, sim->c->v) / volume - 1);
+  const double drift = fabs(integral(sim->grid.mesh, sim->c->v) / volume - 1);
   two_phase_destroy(sim);
   ck_assert(done);
   /* of sqrt(g H) = 0.7; the solvers stop at 1e-12 */
@@ -107,10 +108,10 @@ START_TEST(a_dense_block_moves_on_through_light_gas) {
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const bool done = advance(sim, 3, 1);
   double fastest = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     if (sim->c->v[i] > 0.5) fastest = fmax(fastest, fabs(sim->u[0]->v[i]));
   }
-  fastest = mesh_max(sim->mesh, fastest);
+  fastest = mesh_max(sim->grid.mesh, fastest);
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(fastest, 1, 0.01);
@@ -137,12 +138,12 @@ START_TEST(cut_leaves_start_with_the_momentum_of_their_grains) {
   params.shape = (struct function){slanted, NULL};
   params.velocity[0] = (struct function){slanted_speed, NULL};
   struct two_phase *sim = two_phase_new(&params);
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double c = sim->c->v[i], rho = params.gas.density;
     const double momentum = (rho + (1 - rho) * c) * sim->u[0]->v[i];
     most = fmax(most, fabs(momentum - c));
   }
-  most = mesh_max(sim->mesh, most);
+  most = mesh_max(sim->grid.mesh, most);
   two_phase_destroy(sim);
   /* a lattice of 8 points along an edge */
   ck_assert_double_le(most, 0.1);
@@ -159,17 +160,18 @@ START_TEST(a_collapse_keeps_its_volume) {
   if (_i & 1) params.boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
   if (_i & 2) params.cfl = 1;
   struct two_phase *sim = two_phase_new(&params);
-  const double volume = integral(sim->mesh, sim->c->v);
-  const double cells = (double)forest_nleaves_global(sim->forest);
+  const double volume = integral(sim->grid.mesh, sim->c->v);
+  const double cells = (double)forest_nleaves_global(sim->grid.forest);
   double drift = 0, excess = 0;
   bool done = true, adapted = false;
   for (int k = 0; k < 60 && done; k++) {
     done = step_advance(sim, 1) == EXIT_DONE;
-    drift = fmax(drift, fabs(integral(sim->mesh, sim->c->v) / volume - 1));
-    excess = fmax(excess, vof_excess(sim->mesh, sim->c->v));
-    adapted = adapted || (double)forest_nleaves_global(sim->forest) != cells;
+    drift = fmax(drift, fabs(integral(sim->grid.mesh, sim->c->v) / volume - 1));
+    excess = fmax(excess, vof_excess(sim->grid.mesh, sim->c->v));
+    adapted =
+        adapted || (double)forest_nleaves_global(sim->grid.forest) != cells;
   }
-  excess = mesh_max(sim->mesh, excess);
+  excess = mesh_max(sim->grid.mesh, excess);
   const double speed = largest(sim, sim->u);
   two_phase_destroy(sim);
   ck_assert(done);
@@ -206,16 +208,17 @@ START_TEST(sweeps_that_overfill_are_repeated_in_parts) {
     params.velocity[d] = (struct function){taylor_green, &kAxis[d]};
   }
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
-  const double before = integral(sim->mesh, sim->c->v);
+  const double before = integral(sim->grid.mesh, sim->c->v);
   double rate = 0;
-  for (int32_t f = 0; f < sim->mesh->nfaces; f++) {
-    rate = fmax(rate, fabs(sim->u_f->v[f]) / sim->mesh->face_h[f]);
+  for (int32_t f = 0; f < sim->grid.mesh->nfaces; f++) {
+    rate = fmax(rate, fabs(sim->u_f->v[f]) / sim->grid.mesh->face_h[f]);
   }
-  fields_save(&sim->fields, sim->mesh);
-  rate = mesh_max(sim->mesh, rate);
+  fields_save(&sim->grid.fields, sim->grid.mesh);
+  rate = mesh_max(sim->grid.mesh, rate);
   fractions_advance(sim, 1 / rate, _i ? rate : VOF_CFL * rate);
-  const double after = integral(sim->mesh, sim->c->v);
-  const double excess = mesh_max(sim->mesh, vof_excess(sim->mesh, sim->c->v));
+  const double after = integral(sim->grid.mesh, sim->c->v);
+  const double excess =
+      mesh_max(sim->grid.mesh, vof_excess(sim->grid.mesh, sim->c->v));
   two_phase_destroy(sim);
   ck_assert_double_eq_tol(after, before, 1e-14);
   if (_i) {
@@ -229,7 +232,7 @@ END_TEST
 /* Numbers that tell one state from another, the last with all leaves in it. */
 enum { NNUMBERS = 6 + DIM };
 static void numbers(const struct two_phase *sim, double out[NNUMBERS]) {
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   double sum[NNUMBERS] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double v = mesh_volume(mesh, i), c = sim->c->v[i];
@@ -295,7 +298,7 @@ static double fall(enum look look, double out[NNUMBERS]) {
   for (int k = 0; k < 40 && divergence < 1; k++) {
     if (look == FAILED_ONCE && k % 8 == 7) fail_a_step(sim, &params);
     const bool done = step_advance(sim, 1) == EXIT_DONE;
-    const double left = sim->dt * clean_divergence(sim->mesh, sim->u_f->v);
+    const double left = sim->dt * clean_divergence(sim->grid.mesh, sim->u_f->v);
     divergence = done ? fmax(divergence, left) : 1;
     if (look == LOOKED_AT) {
       fractions_synchronise(sim);
@@ -339,8 +342,8 @@ static double decay_error(int level, double theta, double *shape) {
   const double exact = exp(-2 * eta * kWave * kWave * sim->time);
   double energy[2] = {0};
   *shape = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double x[3] = {sim->mesh->x[i][0], sim->mesh->x[i][1]};
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double x[3] = {sim->grid.mesh->x[i][0], sim->grid.mesh->x[i][1]};
     for (int d = 0; d < 2; d++) {
       const double start = taylor_green(&kAxis[d], x);
       energy[0] += start * start;
@@ -348,9 +351,9 @@ static double decay_error(int level, double theta, double *shape) {
       *shape = fmax(*shape, fabs(sim->u[d]->v[i] - exact * start));
     }
   }
-  *shape = mesh_max(sim->mesh, *shape);
+  *shape = mesh_max(sim->grid.mesh, *shape);
   const double ratio =
-      mesh_sum(sim->mesh, energy[1]) / mesh_sum(sim->mesh, energy[0]);
+      mesh_sum(sim->grid.mesh, energy[1]) / mesh_sum(sim->grid.mesh, energy[0]);
   two_phase_destroy(sim);
   if (!done) return INFINITY;
   return fabs(ratio / (exact * exact) - 1);
@@ -441,11 +444,11 @@ START_TEST(a_dense_square_drifts_with_its_gas) {
   double most = 0;
   for (int d = 0; d < DIM; d++) {
     const double exact = d == 0 ? 1 : d == 1 ? 0.5 : 0;
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       most = fmax(most, fabs(sim->u[d]->v[i] - exact));
     }
   }
-  most = mesh_max(sim->mesh, most);
+  most = mesh_max(sim->grid.mesh, most);
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(most, 1e-10);
@@ -462,19 +465,19 @@ START_TEST(a_drop_falls_freely) {
   params.gas.rheology = newtonian(1e-6);
   params_follow_surface(&params, 3, 2);
   struct two_phase *sim = two_phase_new(&params);
-  const double mass = integral(sim->mesh, sim->c->v);
+  const double mass = integral(sim->grid.mesh, sim->c->v);
   bool done = true;
   double speed = 0, fall = 0;
   while (done && sim->time < 0.5 - 1e-12) {
     done = step_advance(sim, 0.5 - sim->time) == EXIT_DONE;
   }
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
-    const double part = sim->c->v[i] * mesh_volume(sim->mesh, i) / mass;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double part = sim->c->v[i] * mesh_volume(sim->grid.mesh, i) / mass;
     speed -= part * sim->u[DIM - 1]->v[i];
-    fall += part * (body.centre[DIM - 1] - sim->mesh->x[i][DIM - 1]);
+    fall += part * (body.centre[DIM - 1] - sim->grid.mesh->x[i][DIM - 1]);
   }
-  speed = mesh_sum(sim->mesh, speed);
-  fall = mesh_sum(sim->mesh, fall);
+  speed = mesh_sum(sim->grid.mesh, speed);
+  fall = mesh_sum(sim->grid.mesh, fall);
   const double most = largest(sim, sim->u), time = sim->time;
   const double exact = 0.5 * pow(time - 0.5 * sim->dt, 2); /* c lives there */
   two_phase_destroy(sim);
@@ -495,9 +498,9 @@ START_TEST(the_mean_pressure_is_that_of_the_case) {
   params.pressure_level_given = true;
   params.pressure_level = 3.5;
   struct two_phase *sim = two_phase_new(&params);
-  const double start = integral(sim->mesh, sim->p->v);
+  const double start = integral(sim->grid.mesh, sim->p->v);
   const bool done = advance(sim, 3, 0.01);
-  const double end = integral(sim->mesh, sim->p->v);
+  const double end = integral(sim->grid.mesh, sim->p->v);
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(start, 3.5, 1e-12);
@@ -525,7 +528,7 @@ START_TEST(an_inflow_brings_its_fraction) {
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const bool done = advance(sim, 6, 0.01);
   const double carried = 0.3 * (sim->time - 0.5 * sim->dt);
-  const double volume = integral(sim->mesh, sim->c->v);
+  const double volume = integral(sim->grid.mesh, sim->c->v);
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(volume, carried, 1e-12);
@@ -563,9 +566,9 @@ START_TEST(an_opening_lets_no_grains_in) {
   params.boundary[2 * DIM - 2] = params.boundary[2 * DIM - 1] =
       (struct boundary){.type = BOUNDARY_OUTFLOW};
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
-  const double before = integral(sim->mesh, sim->c->v);
+  const double before = integral(sim->grid.mesh, sim->c->v);
   const bool done = advance(sim, 10, 0.02);
-  const double after = integral(sim->mesh, sim->c->v);
+  const double after = integral(sim->grid.mesh, sim->c->v);
   const double speed = largest(sim, sim->u);
   two_phase_destroy(sim);
   ck_assert(done);
@@ -607,12 +610,12 @@ START_TEST(a_heap_less_steep_than_friction_rests) {
   bool done = true;
   double fastest = 0;
   while (done && sim->time < 1) done = step_advance(sim, 0.02) == EXIT_DONE;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int d = 0; d < DIM && sim->c->v[i] > 0.5; d++) {
       fastest = fmax(fastest, fabs(sim->u[d]->v[i]));
     }
   }
-  fastest = mesh_max(sim->mesh, fastest);
+  fastest = mesh_max(sim->grid.mesh, fastest);
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(fastest, 2e-3); /* of sqrt(g H) */
@@ -666,7 +669,7 @@ START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
     done = advance(sim[k], 1, 1) && done;
     field_arrays(sim[k]->u, u[k]);
   }
-  const struct mesh *mesh = sim[0]->mesh;
+  const struct mesh *mesh = sim[0]->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double grains = sim[0]->c->v[i] * mesh_volume(mesh, i);
     for (int d = 0; d < DIM; d++) {
@@ -691,17 +694,17 @@ START_TEST(a_solve_that_fails_is_told) {
   struct two_phase *sim = two_phase_new(&params);
   const double start = 0.01;
   double moved = 0;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) sim->u[d]->v[i] = start * i;
   }
   const int status = step_advance(sim, 0.01);
   const enum solve_status solve = sim->pressure.status;
-  for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
       moved = fmax(moved, fabs(sim->u[d]->v[i] - start * i));
     }
   }
-  moved = mesh_max(sim->mesh, moved);
+  moved = mesh_max(sim->grid.mesh, moved);
   two_phase_destroy(sim);
   ck_assert_double_eq(moved, 0);
   ck_assert_int_eq(solve, SOLVE_STALLED);

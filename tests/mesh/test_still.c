@@ -10,6 +10,7 @@
 #include <check.h>
 
 #include "sim.h"
+#include "talus/two_phase/start.h"
 
 Suite *still_suite(void);
 

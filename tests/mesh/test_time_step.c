@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sudden starts: the length of a step, and c in step with it. */
+#include "talus/two_phase/start.h"
 #include "talus/two_phase/time_step.h"
 
 #include <check.h>
@@ -71,7 +72,7 @@ START_TEST(c_is_in_0_1_however_long_it_has_lagged) {
     params.velocity[d] = (struct function){squeeze, &axis[d]};
   }
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
-  const struct mesh *mesh = sim->mesh;
+  const struct mesh *mesh = sim->grid.mesh;
   const double before = integral(mesh, sim->c->v);
   const double rate = time_step_rate(sim);
   double *c = MEM_NEW(double, mesh->nleaves);
@@ -83,7 +84,7 @@ START_TEST(c_is_in_0_1_however_long_it_has_lagged) {
     sim->dt = 6 / rate;
     fractions_synchronise(sim);
   } else {
-    fields_save(&sim->fields, mesh);
+    fields_save(&sim->grid.fields, mesh);
     fractions_advance(sim, 3 / rate, rate);
   }
   const double after = integral(mesh, sim->c->v);
@@ -147,7 +148,7 @@ START_TEST(a_tilt_is_a_sudden_start) {
   params.gravity[0] = 1;
   conditions_renew(sim);
   const bool done = step_advance(sim, 0.4) == EXIT_DONE;
-  const double dt = sim->dt, h = sim->mesh->h[0];
+  const double dt = sim->dt, h = sim->grid.mesh->h[0];
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(dt, 0.1 * sqrt(h));
@@ -158,8 +159,8 @@ START_TEST(the_same_conditions_change_nothing) {
   struct params params;
   struct two_phase *sim = bed_at_rest(&params);
   const double dt = sim->dt;
-  const size_t bytes = (size_t)sim->mesh->nleaves * sizeof(double);
-  double *p = MEM_NEW(double, sim->mesh->nleaves);
+  const size_t bytes = (size_t)sim->grid.mesh->nleaves * sizeof(double);
+  double *p = MEM_NEW(double, sim->grid.mesh->nleaves);
   memcpy(p, sim->p->v, bytes);
   conditions_renew(sim);
   const bool same = sim->dt == dt && sim->energy.changed == 0 &&

@@ -23,12 +23,12 @@ static double height(void *context, const double x[3]) {
 static double kinetic(const struct two_phase *sim) {
   double sum = 0;
   for (int d = 0; d < DIM; d++) {
-    for (int32_t i = 0; i < sim->mesh->nleaves; i++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       const double u = sim->u[d]->v[i];
-      sum += 0.5 * u * u * mesh_volume(sim->mesh, i);
+      sum += 0.5 * u * u * mesh_volume(sim->grid.mesh, i);
     }
   }
-  return mesh_sum(sim->mesh, sum);
+  return mesh_sum(sim->grid.mesh, sum);
 }
 
 static bool advance(struct two_phase *sim, int nsteps, double dt) {

@@ -44,9 +44,6 @@
 
 struct phase;
 
-/* Fractions below this count as gas for properties and refinement. */
-#define PROPERTIES_GAS 1e-6
-
 /* rho [nleaves] of leaves; alpha_f [nfaces_all] = 1/rho on faces, 0 on closed
  * patches. density[0]: grains, [1]: gas. c filled. Collective. */
 void properties_density(const struct mesh *mesh, const double density[2],

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "talus/field.h"
+#include "talus/grid.h"
 #include "talus/params.h"
 #include "talus/solve.h"
 #include "talus/two_phase/conditions.h"
@@ -18,10 +18,8 @@
 
 enum { TWO_PHASE_MAX_KNOWN = 8 };
 
-struct clean;
+struct followed;
 struct forest;
-struct hierarchy;
-struct level_raster;
 struct skin;
 
 /* Energies of the grains, per unit width in 2D, in J/m (J in 3D). */
@@ -48,24 +46,9 @@ enum step_stage {
   NSTAGES
 };
 
-/* How a simulation starts, which takes long on a fine grid. */
-struct two_phase_start {
-  int64_t most_leaves; /* for which there is memory; 0: no bound */
-  /* Told now and then what is being done, what part of it is done, and the
-   * leaves so far; on every rank for itself. NULL: nobody is told. */
-  void (*tell)(void *context, const char *what, double part, int64_t leaves);
-  void *context;
-};
-
 struct two_phase {
   const struct params *params; /* borrowed */
-  struct forest *forest;       /* owned, as all below */
-  struct mesh *mesh;
-  struct hierarchy *hierarchy;
-  struct clean *clean;
-  struct fields fields;
-  struct level_raster *level_raster[PARAMS_MAX_CRITERIA]; /* of those that are
-                              functions of position; NULL until asked for */
+  struct grid grid;            /* owned, as all below */
 
   /* State, kept over adaptation and restart */
   struct field *c; /* volume fraction of grains */
@@ -102,13 +85,8 @@ struct two_phase {
   struct field *known[TWO_PHASE_MAX_KNOWN]; /* outputs of the closure */
   int nknown;
 
-  bool closed[MESH_MAX_PATCHES]; /* patches whose normal velocity is given */
-  bool open[MESH_MAX_PATCHES];   /* the others */
-  bool pressure_set;             /* by some face of the mesh */
-
-  const struct two_phase_start *start; /* borrowed while it starts, or NULL */
-  int64_t most_leaves;                 /* there is memory for; 0: no bound */
-  double outgrown; /* leaves wanted when there was none, else 0 */
+  int64_t most_leaves; /* there is memory for; 0: no bound */
+  double outgrown;     /* leaves wanted when there was none, else 0 */
 
   double time, dt;
   int64_t step;
@@ -128,26 +106,18 @@ struct two_phase {
   double mark;             /* when the stage under way began */
 };
 
-/* Initial state of the case: grid adapted to it, fields set, static
- * pressure. Collective. Owned by the caller. */
-struct two_phase *two_phase_new(const struct params *params);
-/* The same; where the grid would outgrow the memory, `outgrown` is set and the
- * grid stays coarser. */
-struct two_phase *two_phase_new_told(const struct params *params,
-                                     const struct two_phase_start *start);
-/* The same fields on a given forest (which it takes over), all zero, for a
- * restart: io then fills `fields`, and the caller sets all scalars. */
+/* Make the fields of a state on a forest, which it takes over, all zero; a
+ * start fills them, or a checkpoint. Collective. The caller owns the state. */
 struct two_phase *two_phase_new_on(const struct params *params,
                                    struct forest *forest);
 void two_phase_destroy(struct two_phase *sim);
-/* Forest layout of the case. */
-struct forest_layout;
-void two_phase_layout(const struct params *params,
-                      struct forest_layout *layout);
-/* Of grains and gas, which without an interface is the same. */
+/* Give the densities of grains and gas, which without an interface are the
+ * same. */
 void two_phase_densities(const struct two_phase *sim, double density[2]);
-/* Make mesh, hierarchy and cleaning tree anew from the forest; the fields
- * are reset to zero. Collective. */
-void two_phase_remesh(struct two_phase *sim);
+/* Give the fields that the criteria of adaptation look at. */
+struct followed two_phase_followed(const struct two_phase *sim);
+/* Make one round of adaptation (adapt.h); returns whether the grid has changed.
+ * Collective. */
+bool two_phase_adapt(struct two_phase *sim);
 
 #endif
