@@ -138,15 +138,14 @@ static inline double mesh_volume(const struct mesh *mesh, int32_t i) {
   return DIM == 2 ? h * h : h * h * h;
 }
 
-/* Area of a side of leaf i, m^2 (in 2D m). */
-static inline double mesh_side_area(const struct mesh *mesh, int32_t i) {
-  const double h = mesh->h[i];
-  return DIM == 2 ? h : h * h;
-}
-
 /* Volume of leaf i over the area of a side, m. */
 static inline double mesh_width(const struct mesh *mesh, int32_t i) {
   return mesh->h[i];
+}
+
+/* Area of a side of leaf i, m^2 (in 2D m). */
+static inline double mesh_side_area(const struct mesh *mesh, int32_t i) {
+  return mesh_volume(mesh, i) / mesh_width(mesh, i);
 }
 
 /* Area of face f < nfaces, m^2 (in 2D m). */
@@ -201,6 +200,14 @@ static inline double mesh_mean_along(const struct mesh *mesh, const double *v,
   return 0.5 * (v[face[2 * d]] + v[face[2 * d + 1]]);
 }
 
+/* Mean of the face values on all sides of leaf i. */
+static inline double mesh_mean(const struct mesh *mesh, const double *v,
+                               int32_t i) {
+  double sum = 0;
+  for (int s = 0; s < NFACE; s++) sum += v[mesh->cell_face[i][s]];
+  return sum / NFACE;
+}
+
 /* Slope across face f < nfaces of what differs by this much between its nodes,
  * 1/m. */
 static inline double mesh_slope(const struct mesh *mesh, int32_t f,
@@ -213,6 +220,12 @@ static inline double mesh_gradient(const struct mesh *mesh, const double *v,
                                    int32_t f) {
   const int32_t *node = mesh->face_node[f];
   return mesh_slope(mesh, f, v[node[1]] - v[node[0]]);
+}
+
+/* Slope of what differs by this much over an edge of leaf or ghost i, 1/m. */
+static inline double mesh_leaf_slope(const struct mesh *mesh, int32_t i,
+                                     double difference) {
+  return difference / mesh->h[i];
 }
 
 /* Length in edges of leaf or ghost i: how many cells a front moves. */

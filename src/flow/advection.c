@@ -22,11 +22,12 @@ static inline double limited(enum limiter limiter, double a, double b) {
 }
 
 /* Slopes along d of the components u_e of a leaf, first <= e < end, and their
- * upwind changes along the other axes with its velocities w, times h. */
-static inline void leaf_terms(enum limiter limiter, int d, const int32_t *node,
-                              int32_t i, const double w[DIM], int first,
+ * upwind changes per time along the other axes with its velocities w. */
+static inline void leaf_terms(const struct mesh *mesh, enum limiter limiter,
+                              int d, int32_t i, const double w[DIM], int first,
                               int end, double *const u[DIM],
-                              const struct advection_work *work, double h) {
+                              const struct advection_work *work) {
+  const int32_t *node = mesh->stencil[i];
   for (int e = first; e < end; e++) {
     const double *u_e = u[e], here = u_e[i];
     double sum = 0;
@@ -39,7 +40,7 @@ static inline void leaf_terms(enum limiter limiter, int d, const int32_t *node,
         sum += w[t] * (w[t] < 0 ? above : below);
       }
     }
-    work->transverse[e][i] = sum / h;
+    work->transverse[e][i] = mesh_leaf_slope(mesh, i, sum);
   }
 }
 
@@ -57,7 +58,7 @@ static inline struct upwind upwind_of(const struct mesh *mesh, int32_t f,
   const int32_t *node = mesh->face_node[f];
   struct upwind up = {node, node[side], mesh->face_leaf[f][side], 0};
   if (up.leaf < 0) return up;
-  up.reach = (side ? -1 : 1) - u_n * dt / mesh->face_h[f];
+  up.reach = (side ? -1 : 1) - mesh_face_edges(mesh, f, u_n * dt);
   up.reach *= up.from < mesh->begin_virtual ? 0.5 : 0.25; /* a coarse leaf */
   return up;
 }
@@ -83,8 +84,7 @@ void advection_predict(const struct mesh *mesh, double dt, double *const u[DIM],
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       double w[DIM];
       for (int t = 0; t < DIM; t++) w[t] = u[t][i];
-      leaf_terms(limiter, d, mesh->stencil[i], i, w, d, d + 1, u, work,
-                 mesh->h[i]);
+      leaf_terms(mesh, limiter, d, i, w, d, d + 1, u, work);
     }
     mesh_fill_ghosts(mesh, 2, v);
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
@@ -112,12 +112,9 @@ static inline void axis_fluxes(const struct mesh *mesh, int d, double dt,
     v[2 * e] = work->slope[e], v[2 * e + 1] = work->transverse[e];
   }
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t *face = mesh->cell_face[i];
     double w[DIM];
-    for (int t = 0; t < DIM; t++) {
-      w[t] = 0.5 * (u_f[face[2 * t]] + u_f[face[2 * t + 1]]);
-    }
-    leaf_terms(limiter, d, mesh->stencil[i], i, w, 0, DIM, u, work, mesh->h[i]);
+    for (int t = 0; t < DIM; t++) w[t] = mesh_mean_along(mesh, u_f, i, t);
+    leaf_terms(mesh, limiter, d, i, w, 0, DIM, u, work);
   }
   mesh_fill_ghosts(mesh, 2 * DIM, v);
   for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
@@ -145,17 +142,13 @@ void advection_momentum(const struct mesh *mesh, double dt,
   for (int e = 0; e < DIM; e++) v[e + 1] = work->flux[e];
   mesh_fill_faces(mesh, DIM + 1, v);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t *face = mesh->cell_face[i];
-    double net = 0;
-    for (int d = 0; d < DIM; d++) {
-      net += work->volume[face[2 * d + 1]] - work->volume[face[2 * d]];
-    }
+    const double net = mesh_net(mesh, work->volume, i);
     for (int e = 0; e < DIM; e++) {
       double sum = -net * u[e][i];
       for (int d = 0; d < DIM; d++) {
-        sum += work->flux[e][face[2 * d + 1]] - work->flux[e][face[2 * d]];
+        sum += mesh_net_along(mesh, work->flux[e], i, d);
       }
-      out[e][i] -= dt / mesh->h[i] * sum;
+      out[e][i] -= dt / mesh_width(mesh, i) * sum;
     }
   }
 }

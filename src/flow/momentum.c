@@ -66,8 +66,9 @@ void momentum_flux(const struct mesh *mesh, int d, double dt,
       if (leaf < 0) { /* at the boundary itself */
         value = 0.5 * (value + u[e][mesh->face_node[f][1 - upwind]]);
       } else {
-        const double reach = 1 - fabs(u_f[f]) * dt / mesh->face_h[f];
-        const double half = 0.5 * mesh->face_h[f] / mesh->h[leaf] * reach;
+        const double reach = 1 - mesh_face_edges(mesh, f, fabs(u_f[f]) * dt);
+        const double half =
+            0.5 * mesh_edges(mesh, leaf, mesh->face_h[f]) * reach;
         value += (upwind ? -half : half) * out->slope[e][leaf];
       }
       out->carried[e][f] = mass * value;
@@ -84,23 +85,22 @@ void momentum_update(const struct mesh *mesh, int d, double dt,
                      double *const u_start[DIM],
                      const struct momentum_flux *flux, double *const u[DIM]) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t lower = mesh->cell_face[i][2 * d];
-    const int32_t upper = mesh->cell_face[i][2 * d + 1];
-    const double mass[2] = {flux->mass[lower], flux->mass[upper]};
+    const double mass[2] = {mesh_side(mesh, flux->mass, i, 2 * d),
+                            mesh_side(mesh, flux->mass, i, 2 * d + 1)};
     if (band[i] == 0 && mass[0] == 0 && mass[1] == 0) continue;
-    const double k = dt / mesh->h[i];
+    const double k = dt / mesh_width(mesh, i);
     double rho = density[1] + c_old[i] * (density[0] - density[1]);
     double dilation = 0;
     if (band[i] > 0) {
-      dilation =
-          (cc[i] > 0 ? density[0] : density[1]) * (u_f[upper] - u_f[lower]);
+      dilation = (cc[i] > 0 ? density[0] : density[1]) *
+                 mesh_net_along(mesh, u_f, i, d);
       rho += k * (dilation - (mass[1] - mass[0]));
     }
     for (int e = 0; e < DIM; e++) {
       const double *carried = flux->carried[e];
       u[e][i] -= k / rho *
-                 ((carried[upper] - mass[1] * u[e][i]) -
-                  (carried[lower] - mass[0] * u[e][i]) -
+                 ((mesh_side(mesh, carried, i, 2 * d + 1) - mass[1] * u[e][i]) -
+                  (mesh_side(mesh, carried, i, 2 * d) - mass[0] * u[e][i]) -
                   dilation * (u_start[e][i] - u[e][i]));
     }
   }

@@ -12,12 +12,7 @@ struct solve_stats projection_project(const struct projection *projection,
                                       double dt, double *u_f, double *p) {
   const struct mesh *mesh = projection->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t *face = mesh->cell_face[i];
-    double div = 0;
-    for (int d = 0; d < DIM; d++) {
-      div += u_f[face[2 * d + 1]] - u_f[face[2 * d]];
-    }
-    projection->rhs[i] = div / (mesh->h[i] * dt);
+    projection->rhs[i] = mesh_net(mesh, u_f, i) / (mesh_width(mesh, i) * dt);
   }
   struct solve_stats stats = poisson_solve(
       mesh, projection->hierarchy, projection->alpha_f, projection->rho,
@@ -72,8 +67,7 @@ void projection_acceleration(const struct projection *projection, double *face,
   }
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
-      g[d][i] = 0.5 * (face[mesh->cell_face[i][2 * d]] +
-                       face[mesh->cell_face[i][2 * d + 1]]);
+      g[d][i] = mesh_mean_along(mesh, face, i, d);
     }
   }
 }

@@ -78,8 +78,9 @@ void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
     } else if (!vof_is_cut(c[leaf]) || u == 0) {
       fraction = c[leaf];
     } else {
-      fraction = swept_fraction(mesh, d, f, upwind,
-                                fabs(u) * dt / mesh->face_h[f], normal, alpha);
+      fraction =
+          swept_fraction(mesh, d, f, upwind,
+                         mesh_face_edges(mesh, f, fabs(u) * dt), normal, alpha);
     }
     flux[f] = u * fraction;
   }
@@ -93,10 +94,9 @@ void vof_freeze(const struct mesh *mesh, const double *c, double *cc) {
 void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
                 const double *flux, const double *cc, double *c) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t lower = mesh->cell_face[i][2 * d];
-    const int32_t upper = mesh->cell_face[i][2 * d + 1];
-    c[i] -= dt / mesh->h[i] *
-            (flux[upper] - flux[lower] - cc[i] * (u_f[upper] - u_f[lower]));
+    c[i] -= dt / mesh_width(mesh, i) *
+            (mesh_net_along(mesh, flux, i, d) -
+             cc[i] * mesh_net_along(mesh, u_f, i, d));
   }
 }
 

@@ -41,7 +41,8 @@ double remap_on_slopes(const struct remap *remap, const struct field *field,
   const int32_t i = remap->map->first[leaf];
   double value = field->v[i];
   for (int d = 0; d < DIM; d++) {
-    const double offset = (remap->map->x[leaf][d] - mesh->x[i][d]) / mesh->h[i];
+    const double offset =
+        mesh_edges(mesh, i, remap->map->x[leaf][d] - mesh->x[i][d]);
     value += offset * slope_along(mesh, field->v, i, d);
   }
   return value;
@@ -62,7 +63,8 @@ int32_t remap_box(const struct remap *remap, int32_t leaf, double lo[DIM],
   const int32_t i = remap->map->first[leaf];
   const double half = pow(0.5, remap->map->delta[leaf] + 1);
   for (int d = 0; d < DIM; d++) {
-    const double offset = (remap->map->x[leaf][d] - mesh->x[i][d]) / mesh->h[i];
+    const double offset =
+        mesh_edges(mesh, i, remap->map->x[leaf][d] - mesh->x[i][d]);
     lo[d] = offset - half, hi[d] = offset + half;
   }
   return i;
@@ -106,8 +108,9 @@ static double *carry_side(const struct remap *remap, const double *v, int f) {
       out[i] /= NCHILD / 2;
     } else if (map->delta[i] > 0) {
       const double h = pow(0.5, map->delta[i]);
-      const double t = (map->x[i][d] - mesh->x[first][d]) / mesh->h[first] +
-                       0.5 + (side ? 0.5 * h : -0.5 * h);
+      const double away = map->x[i][d] - mesh->x[first][d];
+      const double t =
+          mesh_edges(mesh, first, away) + 0.5 + (side ? 0.5 * h : -0.5 * h);
       out[i] = (1 - t) * v[face[2 * d]] + t * v[face[2 * d + 1]];
     } else {
       out[i] = v[face[f]];

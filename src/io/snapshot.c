@@ -83,8 +83,7 @@ static void write_sides(struct hdf5_file *file, const struct mesh *mesh,
   memcpy(copy, field->v, sizeof(double) * nfaces);
   mesh_fill_faces(mesh, 1, &copy);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    for (int f = 0; f < NFACE; f++) v[i] += copy[mesh->cell_face[i][f]];
-    v[i] /= NFACE;
+    v[i] = mesh_mean(mesh, copy, i);
   }
   hdf5_write(file, field->name, HDF5_REAL, mesh->nleaves, 1, v);
   mem_free(copy);

@@ -27,7 +27,6 @@ struct clean {
   int32_t ntrees;
   int trees[DIM];
   uint64_t tree_span;
-  double per_area[FOREST_MAX_LEVEL + 1]; /* 1/h^(DIM - 1) by level */
   int32_t *tree_number; /* [ntrees] curve number of the tree at a place */
   uint8_t *owned;    /* [nleaves] bit f: the leaf changes face f of its own */
   int32_t *boundary; /* [nboundary] faces on patches */
@@ -118,9 +117,6 @@ static void number_trees(struct clean *clean, const struct mesh *mesh) {
     clean->ntrees *= layout->trees[d];
   }
   clean->tree_span = mesh_key_span(0);
-  for (int l = 0; l <= FOREST_MAX_LEVEL; l++) {
-    clean->per_area[l] = pow(ldexp(1 / layout->size, l), DIM - 1);
-  }
   clean->root = MEM_NEW(int32_t, clean->ntrees);
   clean->tree_number = MEM_NEW(int32_t, clean->ntrees);
   clean->tree_net = MEM_NEW(double, clean->ntrees);
@@ -192,19 +188,10 @@ void clean_destroy(struct clean *clean) {
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
 }
 
-static double net_outflow(const struct mesh *mesh, const double *u_f,
-                          int32_t i) {
-  double net = 0;
-  for (int d = 0; d < DIM; d++) {
-    net += u_f[mesh->cell_face[i][2 * d + 1]] - u_f[mesh->cell_face[i][2 * d]];
-  }
-  return net * (mesh_volume(mesh, i) / mesh->h[i]);
-}
-
 double clean_divergence(const struct mesh *mesh, const double *u_f) {
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    most = max2(most, fabs(net_outflow(mesh, u_f, i)) / mesh_volume(mesh, i));
+    most = max2(most, fabs(mesh_divergence(mesh, u_f, i)));
   }
   return mesh_max(mesh, most);
 }
@@ -212,7 +199,7 @@ double clean_divergence(const struct mesh *mesh, const double *u_f) {
 /* Net outflow of leaf i beyond what `source`, 1/s, asks for; NULL: none. */
 static double net_excess(const struct mesh *mesh, const double *source,
                          const double *u_f, int32_t i) {
-  return net_outflow(mesh, u_f, i) -
+  return mesh_outflow(mesh, u_f, i) -
          (source ? source[i] * mesh_volume(mesh, i) : 0);
 }
 
@@ -223,7 +210,7 @@ static void balance_boundaries(struct clean *clean, const struct mesh *mesh,
   double sum[2] = {excess, 0}; /* net outflow, open area */
   for (int32_t k = 0; k < clean->nboundary; k++) {
     const int32_t f = clean->boundary[k];
-    if (open[mesh->face_patch[f]]) sum[1] += pow(mesh->face_h[f], DIM - 1);
+    if (open[mesh->face_patch[f]]) sum[1] += mesh_face_area(mesh, f);
   }
   MPI_CHECK(
       MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, mesh->comm));
@@ -317,17 +304,18 @@ static void share_out(const double net[NCHILD], double change[NCHILD][NFACE]) {
 }
 
 /* A node is told how its face fluxes change: a leaf changes the velocities of
- * the faces it owns; per_area is 1 over the area of a face. */
+ * the faces it owns. */
 static void tell_node(struct clean *clean, const struct mesh *mesh,
-                      int32_t node, const double change[NFACE], double per_area,
-                      double *u_f) {
+                      int32_t node, const double change[NFACE], double *u_f) {
   if (node >= mesh->nleaves) {
     memcpy(clean->change[node - mesh->nleaves], change, sizeof *clean->change);
     return;
   }
   for (int f = 0; f < NFACE; f++) {
     if (clean->owned[node] >> f & 1) {
-      u_f[mesh->cell_face[node][f]] += change[f] * per_area;
+      const int32_t face = mesh->cell_face[node][f];
+      const double per_area = 1 / mesh_face_area(mesh, face);
+      u_f[face] += change[f] * per_area;
     }
   }
 }
@@ -336,7 +324,6 @@ static void treat_node(struct clean *clean, const struct mesh *mesh, int32_t k,
                        double *u_f) {
   double net[NCHILD], change[NCHILD][NFACE];
   const double *above = clean->change[k];
-  const double per_area = clean->per_area[clean->level[k] + 1];
   for (int c = 0; c < NCHILD; c++) {
     const int32_t child = clean->child[k][c];
     net[c] = clean->slot[k] >= 0 ? clean->shared[clean->slot[k] * NCHILD + c]
@@ -350,7 +337,7 @@ static void treat_node(struct clean *clean, const struct mesh *mesh, int32_t k,
   share_out(net, change);
   for (int c = 0; c < NCHILD; c++) {
     const int32_t child = clean->child[k][c];
-    if (child >= 0) tell_node(clean, mesh, child, change[c], per_area, u_f);
+    if (child >= 0) tell_node(clean, mesh, child, change[c], u_f);
   }
 }
 
@@ -373,8 +360,7 @@ void clean_to_source(struct clean *clean, const struct mesh *mesh,
   balance_trees(clean);
   for (int32_t t = 0; t < clean->ntrees; t++) {
     if (clean->root[t] < 0) continue;
-    tell_node(clean, mesh, clean->root[t], clean->tree_change[t],
-              clean->per_area[0], u_f);
+    tell_node(clean, mesh, clean->root[t], clean->tree_change[t], u_f);
   }
   for (int32_t k = 0; k < clean->ninner; k++) treat_node(clean, mesh, k, u_f);
   mesh_fill_faces(mesh, 1, &u_f);

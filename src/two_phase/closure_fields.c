@@ -22,7 +22,7 @@ static void slopes(const struct mesh *mesh, const double *c,
   const bool lower = gas || is_grains(c[low]);
   const bool upper = gas || is_grains(c[high]);
   const int32_t from = lower ? low : i, to = upper ? high : i;
-  const double k = (lower && upper ? 0.5 : 1) / mesh->h[i];
+  const double k = mesh_leaf_slope(mesh, i, lower && upper ? 0.5 : 1);
   for (int e = 0; e < DIM; e++) grad[e] = k * (u[e][to] - u[e][from]);
 }
 

@@ -51,7 +51,7 @@ static double boundary_velocity(struct two_phase *sim, double *u_f) {
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
     if (patch < 0 || !sim->grid.closed[patch]) continue;
-    sum += fabs(u_f[f]) * pow(mesh->face_h[f], DIM - 1);
+    sum += fabs(u_f[f]) * mesh_face_area(mesh, f);
   }
   return mesh_sum(mesh, sum);
 }

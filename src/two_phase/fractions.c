@@ -89,9 +89,10 @@ static void log_divergence(struct two_phase *sim, double dt) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double net = 0;
     for (int f = 0; f < NFACE; f++) {
-      net += (f & 1 ? 1 : -1) * sim->u_f->v[mesh->cell_face[i][f]];
+      net += (f & 1 ? 1 : -1) * mesh_side(mesh, sim->u_f->v, i, f);
     }
-    sum += sim->frozen->v[i] * net * dt * mesh_volume(mesh, i) / mesh->h[i];
+    sum += sim->frozen->v[i] * net * dt * mesh_volume(mesh, i) /
+           mesh_width(mesh, i);
   }
   sim->divergence_volume += mesh_sum(mesh, sum);
 }

@@ -202,12 +202,12 @@ static double set_sinks(const struct two_phase *sim, double dt,
   }
   field_fill_many(mesh, DIM, sim->u);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double h = mesh->h[i];
     q[i] = 0;
     if (!is_enclosed(sim, solid, reach, i)) continue;
     if (!(reduced_pressure(sim, i) > pressure)) continue;
-    const double fall = speed_around(sim, i) + sqrt(gravity * h);
-    const double part = min2(PART * (1 - sim->c->v[i]), dt * fall / h);
+    const double fall = speed_around(sim, i) + sqrt(gravity * mesh->h[i]);
+    const double part =
+        min2(PART * (1 - sim->c->v[i]), mesh_edges(mesh, i, dt * fall));
     q[i] = -part / dt;
     most = max2(most, part);
   }
@@ -261,9 +261,9 @@ static void limit_sinks(const struct two_phase *sim, double dt, double *q) {
     double out = 0;
     if (!(q[i] < 0)) continue;
     for (int f = 0; f < NFACE; f++) {
-      out += max2(0, (f & 1 ? 1 : -1) * w[mesh->cell_face[i][f]]);
+      out += max2(0, (f & 1 ? 1 : -1) * mesh_side(mesh, w, i, f));
     }
-    const double gas = (1 - sim->c->v[i]) / dt - out / mesh->h[i];
+    const double gas = (1 - sim->c->v[i]) / dt - out / mesh_width(mesh, i);
     q[i] = -min2(-q[i], max2(gas, 0));
   }
 }
@@ -277,10 +277,10 @@ static void add_passage(struct two_phase *sim, double dt) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double given = -min2(q[i], 0) * dt * mesh_volume(mesh, i);
     sum[0] += given;
-    sum[1] -= given * min2(q[i], 0) * mesh->h[i];
+    sum[1] -= given * min2(q[i], 0) * mesh_width(mesh, i);
     for (int f = 0; f < NFACE && vof_is_cut(sim->c->v[i]); f++) {
       const double speed = fabs(w[mesh->cell_face[i][f]]);
-      travel = max2(travel, speed * dt / mesh->h[i]);
+      travel = max2(travel, mesh_edges(mesh, i, speed * dt));
     }
   }
   MPI_CHECK(

@@ -83,7 +83,8 @@ static double extrapolate(const struct two_phase *sim, int32_t i,
       slope += side ? p[next] - p[i] : p[i] - p[next];
       n++;
     }
-    value += n > 0 ? slope / n * (x[d] - mesh->x[i][d]) / mesh->h[i] : 0;
+    slope = n > 0 ? slope / n * (x[d] - mesh->x[i][d]) : 0;
+    value += mesh_leaf_slope(mesh, i, slope);
   }
   return value;
 }
@@ -97,7 +98,7 @@ static double value_at_point(struct two_phase *sim) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double away = 0; /* in edges */
     for (int d = 0; d < DIM; d++) {
-      away = fmax(away, fabs(x[d] - mesh->x[i][d]) / mesh->h[i]);
+      away = fmax(away, mesh_edges(mesh, i, fabs(x[d] - mesh->x[i][d])));
     }
     if (away > 0.5 * (1 + 1e-9)) continue;
     sum += extrapolate(sim, i, x);

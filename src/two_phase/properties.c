@@ -144,7 +144,7 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
       const double weight = balance->weight[node[1]] -
                             balance->weight[node[0]] -
                             (count > 0 ? jump * level / count : 0);
-      gravity_f[f] = along + alpha_f[f] * weight / mesh->face_h[f];
+      gravity_f[f] = along + mesh_slope(mesh, f, alpha_f[f] * weight);
     }
   }
   mesh_fill_faces(mesh, 1, &gravity_f);
@@ -206,7 +206,7 @@ static inline void face_gradient(const struct mesh *mesh, int d, int32_t f,
   const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
   const int other =
       stencil_face(2 * d + (node[0] == mesh->face_owner[f] ? 1 : 0));
-  const double k = 1 / mesh->face_h[f];
+  const double k = mesh_slope(mesh, f, 1);
   for (int e = 0; e < DIM; e++) {
     for (int t = 0; t < DIM; t++) {
       const int step = stencil_step(t);
@@ -243,8 +243,8 @@ static void skin_shear_squared(const struct mesh *mesh, const struct skin *skin,
     face_gradient(mesh, face->axis, f, u, grad);
     for (int t = 0; t < DIM; t++) {
       for (int e = 0; e < DIM && t != face->axis; e++) {
-        grad[e][t] = face->part[t] * skin_difference(mesh, face, t, u[e]) /
-                     mesh->face_h[f];
+        const double du = skin_difference(mesh, face, t, u[e]);
+        grad[e][t] = mesh_slope(mesh, f, face->part[t] * du);
       }
     }
     squared_f[f] = shear_squared(grad);

@@ -397,9 +397,7 @@ static bool follows_velocity(const struct params *params) {
 static void set_cell_viscosity(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double sum = 0;
-    for (int f = 0; f < NFACE; f++) sum += sim->eta_f->v[mesh->cell_face[i][f]];
-    sim->eta->v[i] = sum / NFACE;
+    sim->eta->v[i] = mesh_mean(mesh, sim->eta_f->v, i);
   }
 }
 
@@ -412,7 +410,7 @@ static void add_travel(struct two_phase *sim, double dt) {
     if (!everywhere && !vof_is_cut(sim->c->v[i])) continue;
     for (int f = 0; f < NFACE; f++) {
       const double u = fabs(sim->u_f->v[mesh->cell_face[i][f]]);
-      travel = max2(travel, u * dt / mesh->h[i]);
+      travel = max2(travel, mesh_edges(mesh, i, u * dt));
     }
   }
   sim->travel += mesh_max(mesh, travel);

@@ -71,18 +71,18 @@ static void take_worst(const struct mesh *mesh, int32_t i, double rate,
 static void find_worst(const struct two_phase *sim, struct worst *flow,
                        struct worst *forces) {
   const struct mesh *mesh = sim->grid.mesh;
+  const double *u_f = sim->u_f->v;
   *flow = *forces = (struct worst){.rate = 0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double sum = 0, fastest = 0, g2 = 0;
+    double fastest = 0, g2 = 0;
     for (int f = 0; f < NFACE; f++) {
-      const double u = fabs(sim->u_f->v[mesh->cell_face[i][f]]);
-      sum += 0.5 * u;
-      fastest = max2(fastest, u);
+      fastest = max2(fastest, fabs(u_f[mesh->cell_face[i][f]]));
     }
     for (int d = 0; d < DIM; d++) g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
-    take_worst(mesh, i, sum / mesh->h[i], fastest, flow);
+    take_worst(mesh, i, mesh_turnover(mesh, u_f, i), fastest, flow);
     if (sim->c->v[i] > 0.5)
-      take_worst(mesh, i, sqrt(sqrt(g2) / mesh->h[i]), sqrt(g2), forces);
+      take_worst(mesh, i, sqrt(mesh_edges(mesh, i, sqrt(g2))), sqrt(g2),
+                 forces);
   }
   share_worst(mesh, flow);
   share_worst(mesh, forces);

@@ -32,7 +32,8 @@ double time_step_boundary_speed(const struct two_phase *sim, bool per_leaf) {
   for (int32_t f = 0; f < mesh->nfaces && fastest > 0; f++) {
     const int patch = mesh->face_patch[f];
     if (patch < 0) continue;
-    most = max2(most, speed[patch] / (per_leaf ? mesh->face_h[f] : 1));
+    most = max2(
+        most, per_leaf ? mesh_face_edges(mesh, f, speed[patch]) : speed[patch]);
   }
   return most;
 }
@@ -41,11 +42,7 @@ double time_step_rate(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double rate = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double sum = 0;
-    for (int f = 0; f < NFACE; f++) {
-      sum += fabs(sim->u_f->v[mesh->cell_face[i][f]]);
-    }
-    rate = max2(rate, 0.5 * sum / mesh->h[i]);
+    rate = max2(rate, mesh_turnover(mesh, sim->u_f->v, i));
   }
   return mesh_max(mesh, rate);
 }
@@ -68,8 +65,8 @@ static double acceleration_bound(const struct two_phase *sim) {
       g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
       u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
     }
-    const double g = sqrt(g2), h = mesh->h[i];
-    if (u2 < g * h) most = max2(most, g / h);
+    const double g = sqrt(g2);
+    if (u2 < g * mesh->h[i]) most = max2(most, mesh_edges(mesh, i, g));
   }
   most = mesh_max(mesh, most);
   return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;

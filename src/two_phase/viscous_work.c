@@ -24,12 +24,13 @@ static void boundary_power(const struct two_phase *sim, const double density[2],
       if (patch < 0 || !sim->grid.closed[patch]) continue;
       const int32_t *node = mesh->face_node[f], i = mesh->face_owner[f];
       const double out = node[0] == i ? 1 : -1, c = sim->c->v[i];
-      const double area = mesh_volume(mesh, i) / mesh->h[i];
+      const double area = mesh_face_area(mesh, f);
       double sum = 0;
       for (int e = 0; e < DIM; e++) {
         const double *u = sim->u[e]->v, wall = sim->u[e]->bc[patch].value;
-        const double stress = (e == d ? 2 : 1) * sim->eta_f->v[f] *
-                              (u[node[1]] - u[node[0]]) / mesh->face_h[f];
+        const double eta = (e == d ? 2 : 1) * sim->eta_f->v[f];
+        const double stress =
+            mesh_slope(mesh, f, eta * (u[node[1]] - u[node[0]]));
         sum += out * area * wall * stress;
       }
       power[0] += c * density[0] / sim->rho->v[i] * sum;

@@ -141,15 +141,17 @@ static double *linear_velocity(const struct mesh *mesh) {
 static void leaf_errors(const struct mesh *mesh, const double *v, int32_t i,
                         double error[4]) {
   const double h = mesh->h[i], volume = pow(h, DIM);
-  double div = 0, through = 0;
+  double div = 0, through = 0, mean = 0;
   for (int d = 0; d < DIM; d++) {
     const double u = component(d, mesh->x[i]), half = 0.5 * kSlope[d][d] * h;
     const double net = mesh_net_along(mesh, v, i, d);
     div += kSlope[d][d];
+    mean += u / DIM;
     through += 0.5 * (fabs(u - half) + fabs(u + half));
     error[0] = larger(error[0], fabs(net - kSlope[d][d] * h));
     error[2] = larger(error[2], fabs(mesh_mean_along(mesh, v, i, d) - u));
   }
+  error[2] = larger(error[2], fabs(mesh_mean(mesh, v, i) - mean));
   error[1] = larger(error[1], h * fabs(mesh_divergence(mesh, v, i) - div));
   error[1] = larger(error[1], fabs(mesh_outflow(mesh, v, i) - div * volume));
   error[3] = larger(error[3], fabs(h * mesh_turnover(mesh, v, i) - through));
@@ -247,6 +249,7 @@ START_TEST(every_face_joins_its_neighbours) {
       good =
           good && mesh_edges(mesh, owner, gap) == mesh_face_edges(mesh, f, gap);
       good = good && mesh_edges(mesh, owner, mesh->h[owner]) == 1;
+      good = good && mesh_leaf_slope(mesh, owner, mesh->h[owner]) == 1;
     }
   }
   ck_assert(all_ranks(good));
