@@ -4,6 +4,7 @@
 #include <check.h>
 
 #include "sim.h"
+#include "talus/error.h"
 #include "talus/vof.h"
 
 /* Level sets of grains; the last axis is up. */
@@ -116,6 +117,25 @@ START_TEST(a_bubble_leaves) {
 }
 END_TEST
 
+/* A step, and its repetitions, whose solves may do nothing. */
+START_TEST(a_step_that_fails_lets_no_gas_pass) {
+  struct params params = case_of(bubble, true, true);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  params.max_iterations = 0;
+  const int failed = step_advance(sim, 0.01);
+  const struct percolation left = sim->percolation;
+  params.max_iterations = 200;
+  const int good = step_advance(sim, 0.01);
+  const double passed = sim->percolation.volume;
+  two_phase_destroy(sim);
+  ck_assert_int_eq(failed, EXIT_NUMERICAL);
+  ck_assert_double_eq(left.volume, 0);
+  ck_assert_double_eq(left.flow, 0);
+  ck_assert_int_eq(good, EXIT_DONE);
+  ck_assert_double_gt(passed, 0);
+}
+END_TEST
+
 START_TEST(gas_stays_where_grains_are_not_permeable) {
   const struct params params = case_of(bubble, false, _i);
   ck_assert_double_le(percolate(&params, 3, 0.02).moved, 0);
@@ -141,6 +161,7 @@ Suite *percolation_suite(void) {
   TCase *tcase = tcase_create("gas");
   tcase_add_loop_test(tcase, a_film_under_grains_closes, 0, 2);
   tcase_add_loop_test(tcase, a_bubble_leaves, 0, 2);
+  tcase_add_test(tcase, a_step_that_fails_lets_no_gas_pass);
   tcase_add_loop_test(tcase, gas_stays_where_grains_are_not_permeable, 0, 2);
   tcase_add_test(tcase, grains_may_part_from_a_lid);
   tcase_add_loop_test(tcase, a_free_surface_is_left_alone, 0, 2);
