@@ -49,6 +49,25 @@ START_TEST(a_fall_from_rest_keeps_to_the_bound) {
 }
 END_TEST
 
+/* After a step that its caller has made short. */
+START_TEST(dt_grows_by_a_fifth_a_step) {
+  struct params params = box_params(3);
+  static double level = 0.5;
+  const double first = 1e-4;
+  double most = 0;
+  bool done = true;
+  params.shape = (struct function){below, &level};
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  for (int k = 0; k < 4; k++) {
+    done = step_advance(sim, k == 0 ? first : 1) == EXIT_DONE && done;
+    most = larger(most, fabs(sim->dt / (first * pow(1.2, k)) - 1));
+  }
+  two_phase_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(most, 1e-14);
+}
+END_TEST
+
 /* The flow of Taylor and Green, which squeezes a slanted bar of grains. */
 static int axis[] = {0, 1};
 static double squeeze(void *context, const double x[3]) {
@@ -175,6 +194,7 @@ Suite *time_step_suite(void) {
   Suite *suite = suite_create("time_step");
   TCase *tc = tcase_create("time_step");
   tcase_add_test(tc, a_fall_from_rest_keeps_to_the_bound);
+  tcase_add_test(tc, dt_grows_by_a_fifth_a_step);
   tcase_add_loop_test(tc, c_is_in_0_1_however_long_it_has_lagged, 0, 4);
   tcase_add_test(tc, another_gravity_is_a_new_start);
   tcase_add_test(tc, a_tilt_is_a_sudden_start);
