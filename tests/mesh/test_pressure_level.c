@@ -91,6 +91,33 @@ START_TEST(without_gas_the_mean_of_the_box_is_taken) {
 }
 END_TEST
 
+/* Any pressure, on leaves of several sizes: what has the level of the case is
+ * its mean by volume, over the box, or over the gas less the gas's weight. */
+START_TEST(means_are_by_volume) {
+  const bool gas = _i;
+  struct params params = still_params(true);
+  params.shape = (struct function){column, NULL};
+  params.pressure_level = 2.5;
+  params.pressure_at = gas ? PRESSURE_AT_GAS : PRESSURE_AT_BOX;
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  double sum[2] = {0};
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    sim->p->v[i] = mesh->x[i][0] * mesh->x[i][0];
+  }
+  pressure_level_set(sim);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double volume = mesh_volume(mesh, i), z = mesh->x[i][DIM - 1];
+    if (gas && sim->c->v[i] > 0) continue;
+    sum[0] += volume * (sim->p->v[i] - (gas ? 1e-3 * (1 - z) : 0));
+    sum[1] += volume;
+  }
+  const double mean = mesh_sum(mesh, sum[0]) / mesh_sum(mesh, sum[1]);
+  two_phase_destroy(sim);
+  ck_assert_double_eq_tol(mean, 2.5, 1e-12);
+}
+END_TEST
+
 static struct diagnostics collapse(enum pressure_at at, bool closed,
                                    bool *done) {
   struct params params = still_params(closed);
@@ -134,6 +161,7 @@ Suite *pressure_level_suite(void) {
   TCase *tcase = tcase_create("closed box");
   tcase_add_test(tcase, gas_in_a_closed_box_has_the_pressure_of_an_open_one);
   tcase_add_loop_test(tcase, a_point_has_the_pressure_of_the_case, 0, 6);
+  tcase_add_loop_test(tcase, means_are_by_volume, 0, 2);
   tcase_add_test(tcase, without_gas_the_mean_of_the_box_is_taken);
   tcase_add_test(tcase, a_column_collapses_as_under_an_open_sky);
   suite_add_tcase(suite, tcase);
