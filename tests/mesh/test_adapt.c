@@ -133,6 +133,41 @@ START_TEST(the_estimate_finds_a_jump_of_velocity) {
 }
 END_TEST
 
+/* v = cos 2 pi x differs from the mean of its neighbours by (1 - cos 2 pi h)
+ * |v|: above the threshold leaves are divided, below a quarter of it merged,
+ * between the two they stay. Loop 1: leaves are of the finest level. */
+START_TEST(leaves_are_kept_down_to_a_quarter_of_the_threshold) {
+  const double pi = acos(-1), limit = 0.81;
+  struct params params = periodic_params(FINE - 1);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  double wrong = 0, found[3] = {0};
+  params.criterion[params.ncriteria++] =
+      (struct criterion){.type = CRITERION_ESTIMATE,
+                         .level = _i ? FINE - 1 : FINE,
+                         .threshold = limit * (1 - cos(2 * pi * mesh->h[0]))};
+  const struct followed followed = two_phase_followed(sim);
+  int8_t *flag = MEM_NEW(int8_t, mesh->nleaves);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    sim->u[1]->v[i] = cos(2 * pi * mesh->x[i][0]);
+  }
+  field_fill(mesh, sim->c);
+  adapt_flags(&sim->grid, &followed, flag);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double v = fabs(sim->u[1]->v[i]) / limit;
+    const int wanted = v < 0.25 ? -1 : v > 1 && !_i;
+    wrong += flag[i] != wanted;
+    found[wanted + 1]++;
+  }
+  wrong = mesh_sum(mesh, wrong);
+  for (int k = 0; k < 3; k++) found[k] = mesh_sum(mesh, found[k]);
+  mem_free(flag);
+  two_phase_destroy(sim);
+  ck_assert_double_eq(wrong, 0);
+  ck_assert(found[0] > 0 && found[1] > 0 && (_i || found[2] > 0));
+}
+END_TEST
+
 /* The jump crosses grains and gas. A leaf that was divided, and merged into no
  * other since, lies within 4 leaves of the phase: 1 beside it, 2 of hysteresis,
  * 1 for the rest of a family. Rounds and a second adaptation change nothing. */
@@ -319,6 +354,8 @@ Suite *adapt_suite(void) {
   tcase_add_test(tc, everything_inside_takes_its_level);
   tcase_add_test(tc, a_function_of_position_sets_the_level);
   tcase_add_test(tc, the_estimate_finds_a_jump_of_velocity);
+  tcase_add_loop_test(tc, leaves_are_kept_down_to_a_quarter_of_the_threshold, 0,
+                      2);
   tcase_add_loop_test(tc, a_criterion_is_confined_to_a_phase, 0, 2);
   tcase_add_loop_test(tc, the_cap_is_respected, 0, 2);
   tcase_add_loop_test(tc, a_second_adaptation_changes_nothing, 0, 2);
