@@ -301,6 +301,33 @@ START_TEST(phases_are_mixed_in_series_along_the_line) {
 }
 END_TEST
 
+/* A flat surface through the centres of a row of leaves, up to round-off of
+ * either sign: the lines along it lie half in the grains. */
+START_TEST(lines_along_the_surface_lie_half_in_the_grains) {
+  struct bench *b = bench_new(1, false, 3, 3);
+  const struct mesh *mesh = b->mesh;
+  struct mixture m = mixture_new(b);
+  const double still[DIM] = {0};
+  const double off[] = {-1e-12, 0, 1e-12}, exact = 1 / (0.5 / 200 + 0.5 / 0.5);
+  double most = 0, lines = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double above = mesh->x[i][DIM - 1] - 0.4375; /* a centre */
+    m.c->v[i] = fabs(above) < 1e-9 ? 0.5 + off[_i] : above < 0;
+  }
+  mixture_eval(b, &m, true, still);
+  for (int32_t f = 0; f < mesh->face_begin[DIM - 1]; f++) {
+    const double c = m.c->v[mesh->face_owner[f]];
+    if (fabs(c - 0.5) > 0.1) continue;
+    most = larger(most, fabs(m.eta[f] / exact - 1));
+    lines++;
+  }
+  most = mesh_max(mesh, most), lines = mesh_sum(mesh, lines);
+  bench_destroy(b);
+  ck_assert_double_eq(lines, (DIM - 1) * 9 * pow(8, DIM - 2));
+  ck_assert_double_le(most, 1e-14);
+}
+END_TEST
+
 /* Each phase has the viscosity of its own closure: grains mu p / gamma, gas
  * constant. Where the surface is a face both halves of the line share the
  * stress: the grains yield at mu p, and below that only the gas gives way. */
@@ -344,6 +371,7 @@ Suite *properties_suite(void) {
   tcase_add_test(tc, face_pressure_is_exact_for_linear_profiles);
   tcase_add_loop_test(tc, gravity_on_a_tilted_bed_is_a_gradient, 0, 2);
   tcase_add_test(tc, phases_are_mixed_in_series_along_the_line);
+  tcase_add_loop_test(tc, lines_along_the_surface_lie_half_in_the_grains, 0, 3);
   tcase_add_test(tc, each_phase_takes_its_own_closure);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
