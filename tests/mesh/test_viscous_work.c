@@ -62,6 +62,33 @@ START_TEST(dissipated_is_the_kinetic_energy_lost) {
 }
 END_TEST
 
+static double nowhere(void *context, const double x[3]) {
+  (void)context, (void)x;
+  return -1;
+}
+
+/* Without grains the same is lost by gas, and by gas alone. */
+START_TEST(heat_of_gas_is_counted_apart) {
+  struct params params = periodic_params(4);
+  params.single_phase = false;
+  params.shape = (struct function){nowhere, NULL};
+  params.gas = (struct phase){1, newtonian(kEta)};
+  params.velocity[0] = (struct function){sine, NULL};
+  params.tolerance_viscous = params.tolerance_pressure = 1e-12;
+  params.pressure_level_given = true;
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  const double before = kinetic(sim);
+  const bool done = advance(sim, 3, 0.2);
+  const double lost = before - kinetic(sim);
+  const struct energy energy = sim->energy;
+  two_phase_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_gt(lost, 0.1 * before);
+  ck_assert_double_eq_tol(energy.gas_dissipated, lost, 1e-9 * before);
+  ck_assert_double_eq(energy.dissipated, 0);
+}
+END_TEST
+
 /* Between a wall at rest and one that moves with speed 1 in a unit box the
  * steady flow turns eta into heat per time and area. */
 START_TEST(moving_walls_heat_the_grains) {
@@ -87,6 +114,7 @@ Suite *viscous_work_suite(void) {
   Suite *suite = suite_create("viscous_work");
   TCase *tcase = tcase_create("work");
   tcase_add_loop_test(tcase, dissipated_is_the_kinetic_energy_lost, 0, 3);
+  tcase_add_test(tcase, heat_of_gas_is_counted_apart);
   tcase_add_test(tcase, moving_walls_heat_the_grains);
   suite_add_tcase(suite, tcase);
   return suite;
