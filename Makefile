@@ -34,8 +34,10 @@ LDLIBS       = $(P4EST_LIBS) $(PKG_LIBS) -lz -lm
 
 LAUNCHER = src/command/launcher.c
 MAIN     = src/command/main.c
+# Files that each hold a model more than src/models.c lists, NAME.c of NAME_model
+MODELS   =
 SOURCES  = $(sort $(filter-out $(LAUNCHER) $(MAIN),$(wildcard src/*.c \
-                  src/*/*.c tree/*.c)))
+                  src/*/*.c tree/*.c)) $(MODELS))
 LEVELS   = unit mesh convergence bench
 C_FILES  = $(sort $(wildcard include/talus/*.h include/talus/*/*.h src/*.[ch] \
                   src/*/*.[ch] tree/*.[ch] tests/*/*.[ch]))
@@ -67,9 +69,10 @@ tests: $(TESTS)
 
 # Texts the build depends on, written when they change: a change of flags or of
 # the list of files rebuilds what it must.
-STAMPS = flags sources $(LEVELS:%=%_suites.inc)
+STAMPS = flags sources models.inc $(LEVELS:%=%_suites.inc)
 $(BUILD)/flags: TEXT = $(COMPILE) $(LDFLAGS) $(LDLIBS)
 $(BUILD)/sources: TEXT = $(SOURCES)
+$(BUILD)/models.inc: TEXT = $(foreach m,$(MODELS),MODEL($(basename $(notdir $m))))
 $(foreach l,$(LEVELS),$(eval $(BUILD)/$l_suites.inc: TEXT = $(patsubst \
   tests/$l/test_%.c,SUITE(%),$(sort $(wildcard tests/$l/test_*.c)))))
 $(STAMPS:%=$(BUILD)/%): FORCE
@@ -80,6 +83,7 @@ define rules # 1: the dimension
 $(BUILD)/$(1)d/%.o: %.c $(BUILD)/flags
 	@mkdir -p $$(@D)
 	$$(call say,$$@)$$(COMPILE) -DDIM=$(1) -MMD -MP -c -o $$@ $$<
+$(BUILD)/$(1)d/src/models.o: $(BUILD)/models.inc
 $(BUILD)/$(1)d/libtalus.a: $(SOURCES:%.c=$(BUILD)/$(1)d/%.o) $(BUILD)/sources
 	@rm -f $$@
 	$$(call say,$$@)ar qcs $$@ $$(filter %.o,$$^)
@@ -152,4 +156,4 @@ clean: ## remove everything that was built
 	rm -rf $(BUILD) compile_commands.json
 help: ## this list
 	@sed -n 's/^\([a-z][a-z -]*\):.*## \(.*\)/\1: \2/p' Makefile
-	@echo "variables: BUILD MODE CC NATIVE= WERROR=-Werror EXTRA_CFLAGS PYTHON V=1"
+	@echo "variables: BUILD MODE CC NATIVE= WERROR=-Werror MODELS EXTRA_CFLAGS PYTHON V=1"

@@ -17,8 +17,8 @@
  * fractions out of [0, 1], numbers that are not finite or out of their range.
  *
  *   (512 bytes)          the seal
- *   /                    attributes version, format, dimension, trees, size,
- *                        origin, periodic
+ *   /                    attributes version, format, model, dimension, trees,
+ *                        size, origin, periodic
  *   /parameters          a group with one text attribute per parameter
  *   /state               a group with the scalars of the model as attributes
  *   /levels /partition   int8 [leaves], int64 [ranks]
@@ -29,8 +29,10 @@
 #define TALUS_CHECKPOINT_H
 
 #include <mpi.h>
+
 #include <stdbool.h>
 #include <stdint.h>
+#include "talus/scalars.h"
 
 struct field;
 struct fields;
@@ -38,28 +40,20 @@ struct forest;
 struct forest_layout;
 struct mesh;
 
-/* One number of the model's state: `real` or `integer`, the other NULL, and
- * the range [low, high] it is read in; 0, 0: every finite number. */
-struct checkpoint_scalar {
-  const char *name;
-  double *real;     /* borrowed */
-  int64_t *integer; /* borrowed */
-  double low, high;
-};
-
-/* Write every field with `restart` set and the scalars. `parameters` is csv
- * text (output.h). Collective. A failure of the disk ends the program with
- * the old file in place. */
-void checkpoint_write(const char *path, const struct mesh *mesh,
-                      const struct fields *fields, int n,
-                      const struct checkpoint_scalar *scalars,
+/* Write every field with `restart` set and n lists of scalars of a run of this
+ * model. `parameters` is csv text (output.h). Collective. A failure of the disk
+ * ends the program with the old file in place. */
+void checkpoint_write(const char *path, const char *model,
+                      const struct mesh *mesh, const struct fields *fields,
+                      int n, const struct scalars scalars[],
                       const char *parameters);
 
 struct checkpoint;
 
-/* Open a checkpoint of a run in a brick of this layout. Collective; whatever
- * does not fit is a USER_ERROR. */
+/* Open a checkpoint of a run of this model in a brick of this layout.
+ * Collective; whatever does not fit is a USER_ERROR. */
 struct checkpoint *checkpoint_open(MPI_Comm comm, const char *path,
+                                   const char *model,
                                    const struct forest_layout *layout);
 /* The stored forest, owned by the caller. Collective. */
 struct forest *checkpoint_forest(struct checkpoint *checkpoint,
@@ -69,10 +63,10 @@ struct forest *checkpoint_forest(struct checkpoint *checkpoint,
  * Collective; a field that is not in the file is a USER_ERROR. */
 void checkpoint_read_fields(struct checkpoint *checkpoint,
                             const struct mesh *mesh, struct fields *fields);
-/* The scalars. Collective; one that is missing or out of its range is a
- * USER_ERROR. */
+/* Read n lists of scalars. Collective; one that is missing or out of its range
+ * is a USER_ERROR. */
 void checkpoint_read_scalars(struct checkpoint *checkpoint, int n,
-                             const struct checkpoint_scalar *scalars);
+                             const struct scalars scalars[]);
 void checkpoint_close(struct checkpoint *checkpoint);
 
 #endif

@@ -111,6 +111,8 @@ struct params {
   char name[256]; /* of the case, gives the output directory */
   char title[256];
   int dimension; /* 2 or 3 */
+  int model;     /* number in the list of models (src/models.c) */
+  void *own;     /* values of the model's own keys (key.h), or NULL */
 
   /* Domain: a brick of trees, each a square or cube of edge `size`. */
   double size;

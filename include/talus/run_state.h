@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What of a run goes into a checkpoint: the simulation, and how far the
+/* What of a run goes into a checkpoint: the model, and how far the
  * output has come. */
 #ifndef TALUS_RUN_STATE_H
 #define TALUS_RUN_STATE_H
@@ -9,7 +9,7 @@
 #include "talus/csv.h"
 
 struct params;
-struct two_phase;
+struct model;
 
 struct run_state {
   double wall_seconds; /* since the first step, over all invocations */
@@ -18,11 +18,12 @@ struct run_state {
 };
 
 /* Write the checkpoint (checkpoint.h). Collective. */
-void run_state_write(const char *path, struct two_phase *sim,
+void run_state_write(const char *path, struct model *model,
                      struct run_state *state, const char *parameters);
-/* The simulation it holds, with all fields filled; *state is set. Collective;
- * a file that does not fit the case is a USER_ERROR. */
-struct two_phase *run_state_read(const char *path, const struct params *params,
-                                 struct run_state *state);
+/* Make the model of the case with the state that the checkpoint holds, all
+ * fields filled; *state is set. Collective; a file that does not fit the case
+ * is a USER_ERROR. The caller owns the model. */
+struct model *run_state_read(const char *path, const struct params *params,
+                             struct run_state *state);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "case_file.h"
+#include "talus/memory.h"
 
 _Static_assert(sizeof((struct params *)0)->title == VALUE_LENGTH,
                "read.c copies texts of this length");
@@ -29,6 +30,10 @@ static void push_path(struct case_file *file, const char *path) {
   }
 }
 
+static const struct model_keys *model_of(const struct case_file *file) {
+  return models_keys(file->params.model);
+}
+
 /* The keys right inside `section` ("" for the case itself) are all that the
  * table on top may hold. */
 static void check_section(struct case_file *file, const char *section) {
@@ -36,7 +41,7 @@ static void check_section(struct case_file *file, const char *section) {
   const struct key *key;
   size_t length = strlen(section);
   int n = 0;
-  for (int i = 0; (key = keys_get(i)) != NULL; i++) {
+  for (int i = 0; (key = keys_get(model_of(file), i)) != NULL; i++) {
     const char *inner = key->path;
     if (length > 0) {
       if (strncmp(inner, section, length) != 0 || inner[length] != '.')
@@ -61,7 +66,8 @@ static void read_section(struct case_file *file, const struct key *key) {
 }
 
 /* The value of `key` is on top. */
-static void read_key(struct case_file *file, const struct key *key) {
+static void read_key(struct case_file *file, const struct key *key,
+                     void *base) {
   switch (key->type) {
     case KEY_TIMES:
       output_read_times(file, key);
@@ -94,8 +100,24 @@ static void read_key(struct case_file *file, const struct key *key) {
       output_read_expect(file, key);
       break;
     default:
-      read_value(file, key, key->path, &file->params);
+      read_value(file, key, key->path, base);
   }
+}
+
+/* Give the struct that holds the value of a key. */
+static void *base_of(struct case_file *file, const struct key *key) {
+  const struct model_keys *model = model_of(file);
+  const bool own = key >= model->keys && key < model->keys + model->nkeys;
+  return own && model->own_size > 0 ? file->params.own : &file->params;
+}
+
+/* Read the model first, since the other keys depend on it. */
+static void read_model(struct case_file *file) {
+  const struct key *key = keys_find(models_keys(0), "model");
+  push_path(file, key->path);
+  read_value(file, key, key->path, &file->params);
+  const size_t size = model_of(file)->own_size;
+  if (size > 0) file->params.own = mem_alloc(1, size);
 }
 
 /* A key inside an optional section that is not there is not missing. */
@@ -112,9 +134,11 @@ static bool is_absent(struct case_file *file, const struct key *key) {
 
 static void check_phases(struct case_file *file) {
   struct params *params = &file->params;
+  const bool has_gas = keys_find(model_of(file), "gas") != NULL;
   bool shape = params->shape.eval != NULL;
   bool gas = params->gas.rheology.model != NULL;
   params->single_phase = !shape && !gas;
+  if (!has_gas) return;
   if (gas && !shape)
     read_fail_at(file, "grains",
                  "grains.shape is missing: there is gas, so say where the "
@@ -149,6 +173,7 @@ static void check_origin(struct case_file *file) {
 
 /* Friction between grains leaves pores; a liquid keeps its bubbles. */
 static void choose_permeable(struct params *params) {
+  if (params->grains.rheology.model == NULL) return;
   const enum permeability choice = params->permeability;
   params->permeable = !params->single_phase &&
                       (choice == PERMEABLE_YES ||
@@ -203,16 +228,17 @@ void build_params(struct case_file *file) {
   lua_State *L = file->L;
   const struct key *key;
   set_defaults(file);
+  read_model(file);
   lua_pushvalue(L, 1);
   check_section(file, "");
   lua_pop(L, 1);
-  for (int i = 0; (key = keys_get(i)) != NULL; i++) {
-    if (is_absent(file, key)) continue;
+  for (int i = 0; (key = keys_get(model_of(file), i)) != NULL; i++) {
+    if (is_absent(file, key) || strcmp(key->path, "model") == 0) continue;
     push_path(file, key->path);
     if (key->type == KEY_SECTION)
       read_section(file, key);
     else
-      read_key(file, key);
+      read_key(file, key, base_of(file, key));
   }
   check_phases(file);
   choose_permeable(&file->params);

@@ -85,6 +85,7 @@ void case_destroy(struct case_file *file) {
   if (file == NULL) return;
   rheology_release(&file->params.grains.rheology);
   rheology_release(&file->params.gas.rheology);
+  mem_free(file->params.own);
   rows_destroy(file);
   patches_destroy(file);
   sandbox_destroy(file->sandbox);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "case_file.h"
+#include "talus/wrap.h"
 
 static const char INTRODUCTION[] =
     "A case is a Lua 5.4 file that returns one table:\n"
@@ -40,18 +41,9 @@ static const char INTRODUCTION[] =
     "be a\n"
     "number, a text, true or false, or a list of numbers.\n";
 
-/* `text` in lines of WIDTH, each begun by `indent` blanks. */
 static void print_wrapped(FILE *f, int indent, const char *text) {
-  enum { WIDTH = 79 };
-  while (*text != '\0') {
-    size_t room = (size_t)(WIDTH - indent), n = strlen(text);
-    if (n > room) {
-      for (n = room; n > 0 && text[n] != ' ';) n--;
-      if (n == 0) n = room;
-    }
-    fprintf(f, "%*s%.*s\n", indent, "", (int)n, text);
-    text += n + strspn(text + n, " ");
-  }
+  fprintf(f, "%*s", indent, "");
+  wrap_print(f, indent, text);
 }
 
 /* "a number > 0, m, needed" */
@@ -166,18 +158,33 @@ static void print_closures(FILE *f) {
   fputs(CREEP, f);
 }
 
+static void print_line(FILE *f, const struct key *key) {
+  const bool inner = strchr(key->path, '.') != NULL;
+  if (!inner) fputs("\n", f);
+  if (key->type == KEY_SECTION)
+    fprintf(f, "%s: %s%s\n", key->path, key->help,
+            key->fallback == NULL ? "" : " (optional)");
+  else
+    print_key(f, inner ? 2 : 0, key);
+}
+
+/* Print the keys that a model has instead of those of the first one. */
+static void print_model(FILE *f, const struct model_keys *model) {
+  fprintf(f, "\nKeys of model = \"%s\" (%s)", model->name, model->title);
+  fprintf(f, " instead of\nthose of \"%s\"", models_keys(0)->name);
+  for (int k = 0; k < models_keys(0)->nkeys; k++)
+    fprintf(f, "%s%s", k == 0 ? ", " : " ", models_keys(0)->keys[k].path);
+  fputs("\n", f);
+  for (int k = 0; k < model->nkeys; k++) print_line(f, &model->keys[k]);
+}
+
 void case_help(FILE *f) {
   const struct key *key;
+  const struct model_keys *model;
   fputs(INTRODUCTION, f);
-  for (int i = 0; (key = keys_get(i)) != NULL; i++) {
-    bool inner = strchr(key->path, '.') != NULL;
-    if (!inner) fputs("\n", f);
-    if (key->type == KEY_SECTION)
-      fprintf(f, "%s: %s%s\n", key->path, key->help,
-              key->fallback == NULL ? "" : " (optional)");
-    else
-      print_key(f, inner ? 2 : 0, key);
-  }
+  for (int i = 0; (key = keys_get(models_keys(0), i)) != NULL; i++)
+    print_line(f, key);
+  for (int k = 1; (model = models_keys(k)) != NULL; k++) print_model(f, model);
   print_closures(f);
   print_boundaries(f);
   print_criteria(f);

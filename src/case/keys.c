@@ -3,26 +3,17 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "talus/case.h"
 
 #define AT(member) offsetof(struct params, member)
 #define SOME_LEVEL .low = 0, .high = CASE_MAX_LEVEL_2D
-#define POSITIVE .low = 0, .high = INFINITY, .above = true
-#define NOT_NEGATIVE .low = 0, .high = INFINITY
-#define ANY .low = -INFINITY, .high = INFINITY
-#define NEEDED .fallback = NULL
-#define OPTIONAL .fallback = ""
-#define DEFAULT .fallback =
-
 /* enum limiter */
 static const char *const LIMITERS[] = {"none", "minmod", "generalised_minmod",
                                        NULL};
 /* enum criterion_phase */
 static const char *const PHASES[] = {"both", "grains", "gas", NULL};
-
-/* enum permeability */
-static const char *const PERMEABILITIES[] = {"auto", "no", "yes", NULL};
 
 _Static_assert(CASE_MAX_LEVEL_3D == 16 && PARAMS_MAX_TRACERS == 8 &&
                    PARAMS_MAX_CRITERIA == 8 && PARAMS_MAX_TIMES == 256,
@@ -32,68 +23,55 @@ _Static_assert(CASE_MAX_LEVEL_3D == 16 && PARAMS_MAX_TRACERS == 8 &&
  * times the lines. */
 /* clang-format off */
 static const struct key KEYS[] = {
-    {"title", KEY_TEXT, ANY, OPTIONAL, .unit = "", .offset = AT(title),
+    {"title", KEY_TEXT, KEY_ANY, KEY_OPTIONAL, .unit = "", .offset = AT(title),
      .help = "one line that says what the case is about"},
-    {"dimension", KEY_INTEGER, .low = 2, .high = 3, NEEDED, .unit = "",
+    {"dimension", KEY_INTEGER, .low = 2, .high = 3, KEY_NEEDED, .unit = "",
      .offset = AT(dimension), .help = "2 or 3"},
 
-    {"domain", KEY_SECTION, NEEDED, .help = "the box and its grid"},
-    {"domain.size", KEY_NUMBER, POSITIVE, NEEDED, .unit = "m",
+    {"model", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "two_phase", .unit = "",
+     .offset = AT(model), .choices = models_names,
+     .help = "what is solved; each model has keys of its own"},
+
+    {"domain", KEY_SECTION, KEY_NEEDED, .help = "the box and its grid"},
+    {"domain.size", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "m",
      .offset = AT(size), .help = "edge of a tree, a square or cube"},
-    {"domain.origin", KEY_VECTOR, ANY, DEFAULT "0", .unit = "m",
+    {"domain.origin", KEY_VECTOR, KEY_ANY, KEY_DEFAULT "0", .unit = "m",
      .offset = AT(origin), .help = "lower corner of the box"},
-    {"domain.trees", KEY_INTEGERS, .low = 1, .high = 1000, DEFAULT "1",
+    {"domain.trees", KEY_INTEGERS, .low = 1, .high = 1000, KEY_DEFAULT "1",
      .unit = "", .offset = AT(trees),
      .help = "trees along each axis, 32767 in all at most"},
-    {"domain.level", KEY_LEVEL, .low = 1, .high = CASE_MAX_LEVEL_2D, NEEDED,
+    {"domain.level", KEY_LEVEL, .low = 1, .high = CASE_MAX_LEVEL_2D, KEY_NEEDED,
      .unit = "", .offset = AT(level_max),
      .help = "finest grid: size/2^level; at most 16 in 3D"},
-    {"domain.level_min", KEY_LEVEL, SOME_LEVEL, DEFAULT "1", .unit = "",
+    {"domain.level_min", KEY_LEVEL, SOME_LEVEL, KEY_DEFAULT "1", .unit = "",
      .offset = AT(level_min), .help = "coarsest grid: size/2^level_min"},
 
-    {"gravity", KEY_VECTOR, ANY, NEEDED, .unit = "m/s^2",
+    {"gravity", KEY_VECTOR, KEY_ANY, KEY_NEEDED, .unit = "m/s^2",
      .offset = AT(gravity), .help = "acceleration"},
-    {"grains", KEY_SECTION, NEEDED, .help = "the granular phase"},
-    {"grains.density", KEY_NUMBER, POSITIVE, NEEDED, .unit = "kg/m^3",
+    {"grains", KEY_SECTION, KEY_NEEDED, .help = "the granular phase"},
+    {"grains.density", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "kg/m^3",
      .offset = AT(grains.density), .help = "bulk density"},
-    {"grains.rheology", KEY_CLOSURE, NEEDED, .unit = "",
-     .offset = AT(grains), .help = "closure, see below"},
-    {"grains.shape", KEY_SHAPE, OPTIONAL, .unit = "m", .offset = AT(shape),
+    {"grains.shape", KEY_SHAPE, KEY_OPTIONAL, .unit = "m", .offset = AT(shape),
      .help = "level set at t = 0, positive inside; left out with gas, they "
              "fill the box"},
-    {"grains.permeable", KEY_CHOICE, ANY, DEFAULT "auto", .unit = "",
-     .offset = AT(permeability), .choices = PERMEABILITIES,
-     .help = "does gas that they enclose leave through them? auto: if their "
-             "viscosity depends on pressure"},
-    {"grains.side_walls", KEY_SECTION, OPTIONAL,
-     .help = "friction of a narrow channel's walls, 2D"},
-    {"grains.side_walls.mu", KEY_NUMBER, NOT_NEGATIVE, NEEDED, .unit = "",
-     .offset = AT(side_walls.mu),
-     .help = "friction coefficient of grains on them"},
-    {"grains.side_walls.width", KEY_NUMBER, POSITIVE, NEEDED, .unit = "m",
-     .offset = AT(side_walls.width), .help = "distance between them"},
-    {"gas", KEY_SECTION, OPTIONAL, .help = "the light phase around them"},
-    {"gas.density", KEY_NUMBER, POSITIVE, NEEDED, .unit = "kg/m^3",
-     .offset = AT(gas.density), .help = "density"},
-    {"gas.rheology", KEY_CLOSURE, NEEDED, .unit = "", .offset = AT(gas),
-     .help = "closure, see below"},
-    {"velocity", KEY_VELOCITY, ANY, DEFAULT "0", .unit = "m/s",
+    {"", KEY_OF_MODEL, .help = ""},
+    {"velocity", KEY_VELOCITY, KEY_ANY, KEY_DEFAULT "0", .unit = "m/s",
      .offset = AT(velocity), .help = "at t = 0, of grains and gas"},
-    {"tracers", KEY_TRACERS, OPTIONAL, .unit = "m", .offset = AT(tracer),
+    {"tracers", KEY_TRACERS, KEY_OPTIONAL, .unit = "m", .offset = AT(tracer),
      .help = "volumes to be followed, name = shape at t = 0; at most 8"},
 
-    {"boundary", KEY_SECTION, NEEDED, .help = "what holds on each side"},
-    {"boundary.left", KEY_SIDE, NEEDED, .unit = "", .help = "lower x"},
-    {"boundary.right", KEY_SIDE, NEEDED, .unit = "", .help = "upper x"},
-    {"boundary.front", KEY_SIDE, NEEDED, .unit = "", .help = "lower y, 3D"},
-    {"boundary.back", KEY_SIDE, NEEDED, .unit = "", .help = "upper y, 3D"},
-    {"boundary.bottom", KEY_SIDE, NEEDED, .unit = "",
+    {"boundary", KEY_SECTION, KEY_NEEDED, .help = "what holds on each side"},
+    {"boundary.left", KEY_SIDE, KEY_NEEDED, .unit = "", .help = "lower x"},
+    {"boundary.right", KEY_SIDE, KEY_NEEDED, .unit = "", .help = "upper x"},
+    {"boundary.front", KEY_SIDE, KEY_NEEDED, .unit = "", .help = "lower y, 3D"},
+    {"boundary.back", KEY_SIDE, KEY_NEEDED, .unit = "", .help = "upper y, 3D"},
+    {"boundary.bottom", KEY_SIDE, KEY_NEEDED, .unit = "",
      .help = "lower y in 2D, lower z in 3D"},
-    {"boundary.top", KEY_SIDE, NEEDED, .unit = "",
+    {"boundary.top", KEY_SIDE, KEY_NEEDED, .unit = "",
      .help = "upper y in 2D, upper z in 3D"},
-    {"boundary.patches", KEY_PATCHES, OPTIONAL, .unit = "",
+    {"boundary.patches", KEY_PATCHES, KEY_OPTIONAL, .unit = "",
      .help = "boundaries by name, for sides that are functions"},
-    {"boundary.pressure_level", KEY_PRESSURE, ANY, OPTIONAL, .unit = "Pa",
+    {"boundary.pressure_level", KEY_PRESSURE, KEY_ANY, KEY_OPTIONAL, .unit = "Pa",
      .offset = AT(pressure_level),
      .help = "pressure when no boundary sets any: {0, at = \"gas\"}, mean "
              "over the gas, its own weight below the top of the box taken "
@@ -102,77 +80,77 @@ static const struct key KEYS[] = {
              "contains the weight of the grains, which drifts as they fall, "
              "so that friction does too"},
 
-    {"adapt", KEY_CRITERIA, OPTIONAL, .unit = "",
+    {"adapt", KEY_CRITERIA, KEY_OPTIONAL, .unit = "",
      .help = "list of at most 8 criteria, the finest wins; without it the "
              "grid is uniform"},
-    {"adapt.every", KEY_INTEGER, .low = 0, .high = 1e6, DEFAULT "0",
+    {"adapt.every", KEY_INTEGER, .low = 0, .high = 1e6, KEY_DEFAULT "0",
      .unit = "steps", .offset = AT(adapt_every),
      .help = "steps between adaptations at most; 0: when the flow needs it"},
-    {"adapt.opening_level", KEY_LEVEL, SOME_LEVEL, DEFAULT "domain.level",
+    {"adapt.opening_level", KEY_LEVEL, SOME_LEVEL, KEY_DEFAULT "domain.level",
      .unit = "", .offset = AT(opening_level),
      .help = "of faces where boundaries meet on a side, and of narrow "
              "inflows and outflows"},
-    {"adapt.max_cells", KEY_COUNT, .low = 1, .high = 1e15, DEFAULT "1e8",
+    {"adapt.max_cells", KEY_COUNT, .low = 1, .high = 1e15, KEY_DEFAULT "1e8",
      .unit = "cells", .offset = AT(max_cells),
      .help = "no refinement beyond this number"},
 
-    {"solver", KEY_SECTION, OPTIONAL, .help = "the numerical method"},
+    {"solver", KEY_SECTION, KEY_OPTIONAL, .help = "the numerical method"},
     {"solver.cfl", KEY_NUMBER, .low = 0, .high = 1, .above = true,
-     DEFAULT "0.7", .unit = "", .offset = AT(cfl),
+     KEY_DEFAULT "0.7", .unit = "", .offset = AT(cfl),
      .help = "bound on sum |u_f| A dt/(2 V)"},
-    {"solver.dt_max", KEY_NUMBER, POSITIVE, DEFAULT "inf", .unit = "s",
+    {"solver.dt_max", KEY_NUMBER, KEY_POSITIVE, KEY_DEFAULT "inf", .unit = "s",
      .offset = AT(dt_max), .help = "longest time step"},
     {"solver.tolerance", KEY_NUMBER, .low = 0, .high = 0.1, .above = true,
-     DEFAULT "1e-4", .unit = "", .offset = AT(tolerance_pressure),
+     KEY_DEFAULT "1e-4", .unit = "", .offset = AT(tolerance_pressure),
      .help = "of both solvers; 1e-4 collapse, 1e-8 analytic, 1e-12 at rest"},
     {"solver.tolerance_pressure", KEY_NUMBER, .low = 0, .high = 0.1,
-     .above = true, DEFAULT "solver.tolerance", .unit = "",
+     .above = true, KEY_DEFAULT "solver.tolerance", .unit = "",
      .offset = AT(tolerance_pressure), .help = "max |div u| dt"},
     {"solver.tolerance_viscous", KEY_NUMBER, .low = 0, .high = 0.1,
-     .above = true, DEFAULT "solver.tolerance", .unit = "",
+     .above = true, KEY_DEFAULT "solver.tolerance", .unit = "",
      .offset = AT(tolerance_viscous),
      .help = "max |dt r/rho|, relative to the speed"},
     {"solver.max_iterations", KEY_INTEGER, .low = 1, .high = 1e6,
-     DEFAULT "100", .unit = "", .offset = AT(max_iterations),
+     KEY_DEFAULT "100", .unit = "", .offset = AT(max_iterations),
      .help = "of one linear solve"},
-    {"solver.picard", KEY_INTEGER, .low = 0, .high = 1000, DEFAULT "0",
+    {"solver.picard", KEY_INTEGER, .low = 0, .high = 1000, KEY_DEFAULT "0",
      .unit = "", .offset = AT(picard),
      .help = "repetitions of viscosity and projection in a step"},
-    {"solver.theta", KEY_NUMBER, .low = 0.5, .high = 1, DEFAULT "1",
+    {"solver.theta", KEY_NUMBER, .low = 0.5, .high = 1, KEY_DEFAULT "1",
      .unit = "", .offset = AT(theta),
      .help = "viscous step: 1 backward Euler, 0.5 Crank-Nicolson"},
-    {"solver.limiter", KEY_CHOICE, ANY, DEFAULT "none", .unit = "",
+    {"solver.limiter", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "none", .unit = "",
      .offset = AT(limiter), .choices = LIMITERS,
      .help = "of slopes in momentum advection, for steep velocities"},
 
-    {"output", KEY_SECTION, NEEDED, .help = "when to end and what to write"},
-    {"output.stop", KEY_NUMBER, POSITIVE, NEEDED, .unit = "s",
+    {"output", KEY_SECTION, KEY_NEEDED, .help = "when to end and what to write"},
+    {"output.stop", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "s",
      .offset = AT(stop), .help = "time of the end"},
-    {"output.stop_at_rest", KEY_SECTION, OPTIONAL,
+    {"output.stop_at_rest", KEY_SECTION, KEY_OPTIONAL,
      .help = "end before that, when the grains have come to rest"},
-    {"output.stop_at_rest.speed", KEY_NUMBER, POSITIVE, NEEDED, .unit = "m/s",
+    {"output.stop_at_rest.speed", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "m/s",
      .offset = AT(rest_speed),
      .help = "at rest: the fastest leaf more than half full of grains is "
              "slower; above the creep that run.log tells"},
-    {"output.stop_at_rest.time", KEY_NUMBER, POSITIVE, NEEDED, .unit = "s",
+    {"output.stop_at_rest.time", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "s",
      .offset = AT(rest_time),
      .help = "for this long without a break; longer than they take to set off"},
-    {"output.length_scale", KEY_NUMBER, POSITIVE, DEFAULT "1", .unit = "m",
+    {"output.length_scale", KEY_NUMBER, KEY_POSITIVE, KEY_DEFAULT "1", .unit = "m",
      .offset = AT(length_scale),
      .help = "a length of the problem, for reading and pictures only"},
-    {"output.profile_times", KEY_TIMES, .low = 0, .high = INFINITY, OPTIONAL,
+    {"output.profile_times", KEY_TIMES, .low = 0, .high = INFINITY, KEY_OPTIONAL,
      .unit = "s", .help = "times of outlines in profile.csv, at most 256"},
-    {"output.snapshot_every", KEY_NUMBER, NOT_NEGATIVE, DEFAULT "0",
+    {"output.snapshot_every", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "0",
      .unit = "s", .offset = AT(snapshot_every),
      .help = "time between snapshots; 0: the first and the last only"},
-    {"output.series_every", KEY_INTEGER, .low = 1, .high = 1e9, DEFAULT "1",
+    {"output.series_every", KEY_INTEGER, .low = 1, .high = 1e9, KEY_DEFAULT "1",
      .unit = "steps", .offset = AT(series_every),
      .help = "steps between rows of series.csv"},
-    {"output.checkpoint_every", KEY_NUMBER, NOT_NEGATIVE, DEFAULT "600",
+    {"output.checkpoint_every", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "600",
      .unit = "s", .offset = AT(checkpoint_every),
      .help = "wall-clock time between checkpoints; 0: at the end only"},
 
-    {"expect", KEY_EXPECT, OPTIONAL, .unit = "",
+    {"expect", KEY_EXPECT, KEY_OPTIONAL, .unit = "",
      .help = "for make examples-check: run = \"name=value ...\" and, for "
              "columns of the last row of series.csv, {least, most}"},
 };
@@ -195,13 +173,13 @@ static const struct boundary_kind BOUNDARY_KINDS[] = {
 #undef AT
 #define AT(member) offsetof(struct boundary, member)
 static const struct key BOUNDARY_OPTIONS[] = {
-    {"velocity", KEY_VECTOR, ANY, DEFAULT "0", .unit = "m/s",
+    {"velocity", KEY_VECTOR, KEY_ANY, KEY_DEFAULT "0", .unit = "m/s",
      .offset = AT(velocity), .help = "velocity at the boundary"},
-    {"pressure", KEY_NUMBER, ANY, DEFAULT "0", .unit = "Pa",
+    {"pressure", KEY_NUMBER, KEY_ANY, KEY_DEFAULT "0", .unit = "Pa",
      .offset = AT(pressure), .help = "pressure at the boundary"},
-    {"slip_length", KEY_NUMBER, NOT_NEGATIVE, NEEDED, .unit = "m",
+    {"slip_length", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_NEEDED, .unit = "m",
      .offset = AT(slip_length), .help = "depth at which u would vanish"},
-    {"fraction", KEY_NUMBER, .low = 0, .high = 1, DEFAULT "0", .unit = "",
+    {"fraction", KEY_NUMBER, .low = 0, .high = 1, KEY_DEFAULT "0", .unit = "",
      .offset = AT(fraction), .help = "volume fraction of grains carried in"},
 };
 
@@ -218,13 +196,13 @@ static const struct criterion_kind CRITERION_KINDS[] = {
 #undef AT
 #define AT(member) offsetof(struct criterion, member)
 static const struct key CRITERION_OPTIONS[] = {
-    {"width", KEY_NUMBER, .low = 0, .high = 1000, .above = true, DEFAULT "3",
+    {"width", KEY_NUMBER, .low = 0, .high = 1000, .above = true, KEY_DEFAULT "3",
      .unit = "cells", .offset = AT(width), .help = "half of the band's width"},
-    {"threshold", KEY_NUMBER, POSITIVE, NEEDED, .unit = "m/s",
+    {"threshold", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "m/s",
      .offset = AT(threshold), .help = "largest error left alone"},
-    {"level", KEY_LEVEL, SOME_LEVEL, DEFAULT "domain.level", .unit = "",
+    {"level", KEY_LEVEL, SOME_LEVEL, KEY_DEFAULT "domain.level", .unit = "",
      .offset = AT(level), .help = "finest level asked for"},
-    {"only", KEY_CHOICE, ANY, DEFAULT "both", .unit = "", .offset = AT(only),
+    {"only", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "both", .unit = "", .offset = AT(only),
      .choices = PHASES,
      .help = "where it applies: in leaves that hold some of this phase and "
              "those beside them"},
@@ -235,7 +213,20 @@ static const struct key CRITERION_OPTIONS[] = {
   ((i) >= 0 && (size_t)(i) < sizeof(array) / sizeof *(array) ? &(array)[i] \
                                                              : NULL)
 
-const struct key *keys_get(int i) { return GET(KEYS, i); }
+const struct key *keys_get(const struct model_keys *model, int i) {
+  int mark = 0;
+  while (KEYS[mark].type != KEY_OF_MODEL) mark++;
+  if (i < mark) return &KEYS[i];
+  if (i < mark + model->nkeys) return &model->keys[i - mark];
+  return GET(KEYS, i - model->nkeys + 1);
+}
+
+const struct key *keys_find(const struct model_keys *model, const char *path) {
+  const struct key *key;
+  for (int i = 0; (key = keys_get(model, i)) != NULL; i++)
+    if (strcmp(key->path, path) == 0) return key;
+  return NULL;
+}
 
 const struct boundary_kind *keys_boundary_kind(int i) {
   return GET(BOUNDARY_KINDS, i);
@@ -336,6 +327,7 @@ void keys_allowed(const struct key *key, int dimension, size_t size,
     case KEY_PATCHES:
     case KEY_EXPECT:
     case KEY_SECTION:
+    case KEY_OF_MODEL:
       snprintf(text, size, "a table");
       break;
   }

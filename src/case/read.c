@@ -77,13 +77,27 @@ void read_suggest(const char *word, int n, const char *const *names,
                              i > 0 ? ", " : before, names[i]);
 }
 
+/* Name a model that knows this key; NULL: none does. */
+static const char *model_with(const char *path) {
+  const struct model_keys *model;
+  for (int k = 0; (model = models_keys(k)) != NULL; k++)
+    if (keys_find(model, path) != NULL) return model->name;
+  return NULL;
+}
+
 static _Noreturn void fail_unknown(struct case_file *file, const char *path,
                                    const char *word, int n,
                                    const char *const *names) {
   char inner[PATH_LENGTH], known[1024], value[VALUE_LENGTH];
   path_join(inner, path, word);
-  read_suggest(word, n, names, sizeof known, known);
   describe(file->L, sizeof value, value);
+  const char *other = model_with(inner);
+  if (other != NULL)
+    read_fail_at(file, inner,
+                 "%s = %s is a key of model = \"%s\", and the case is of model "
+                 "= \"%s\": take the key out, or the other model",
+                 inner, value, other, models_names[file->params.model]);
+  read_suggest(word, n, names, sizeof known, known);
   read_fail_at(file, inner, "unknown key %s = %s%s", inner, value, known);
 }
 

@@ -6,7 +6,9 @@
 #include "talus/case.h"
 #include "talus/command_line.h"
 #include "talus/error.h"
+#include "talus/model.h"
 #include "talus/spelling.h"
+#include "talus/wrap.h"
 
 static const char USAGE[] =
     "Talus simulates dry granular flow on adaptive grids.\n"
@@ -94,43 +96,14 @@ static const char PLOT_HELP[] =
     "names, else python3 on PATH, else /usr/bin/python3. `talus plot --help`\n"
     "lists the options.\n";
 
-/* Columns: include/talus/series.h. */
 static const char SERIES_HELP[] =
     "The output directory holds\n"
     "\n"
     "series.csv, a row per step (output.series_every), in the units of the\n"
     "case, here SI. \"The heap\" is the grains without droplets apart from "
-    "it.\n"
-    "  step                 number of the step; 0 is the start\n"
-    "  time, dt             at its end; its length, s\n"
-    "  cells                leaves of the tree\n"
-    "  front, height        where the heap ends, its x (3D: radius from its\n"
-    "                       axis), and its height, m\n"
-    "  volume               of all grains, m^2 (3D: m^3)\n"
-    "  kinetic, potential   energy of the grains, J/m (3D: J)\n"
-    "  dissipated           by viscosity since the start, J/m (3D: J)\n"
-    "  max_speed            of the grains, m/s\n"
-    "  pressure_iterations, viscous_iterations\n"
-    "                       of the solvers in this step\n"
-    "  wall_seconds         on the clock since the first step, s\n"
-    "  droplets             sets of grains apart from the heap\n"
-    "  droplet_volume       their volume, m^2 (3D: m^3)\n"
-    "  numerical            initial + work_of_changes - kinetic - potential -\n"
-    "                       dissipated - given_to_gas, J/m (3D: J): what the\n"
-    "                       scheme loses, less what gravity brings along a "
-    "periodic side,\n"
-    "                       and what left with grains\n"
-    "  divergence_volume    sum over steps of c div u dt V, m^2 (3D: m^3)\n"
-    "  pressure_residual, viscous_residual\n"
-    "                       left by the solvers, in units of the tolerance\n"
-    "  mean_shear_rate      of the grains, 1/s: tells when they rest\n"
-    "  repeat_change        of the velocity in the last Picard repetition,\n"
-    "                       m/s; 0 without\n"
-    "  work_of_changes      energy that restarts with another gravity or\n"
-    "                       density have added, J/m (3D: J)\n"
-    "  given_to_gas         by the grains, in a box that as much gas enters "
-    "as\n"
-    "                       leaves: it rises where they fall, J/m (3D: J)\n"
+    "it.\n";
+
+static const char PROFILE_HELP[] =
     "\n"
     "profile.csv, outlines of the heap at output.profile_times and at the\n"
     "end: time,x,height (3D: time,x,y,height), then a column per tracer by "
@@ -175,8 +148,28 @@ static void help_plot(void) { fputs(PLOT_HELP, stdout); }
 static void help_case(void) { case_help(stdout); }
 static void help_rheology(void) { command_rheology(0, NULL); }
 
+/* Print the columns of a model's series.csv. */
+static void print_columns(const struct model_kind *kind) {
+  enum { INDENT = 23 };
+  for (int k = 0; k < kind->ncolumns; k++) {
+    const struct column *column = &kind->columns[k];
+    char text[512];
+    snprintf(text, sizeof text, "%s%s%s", column->help,
+             *column->unit ? ", " : "", column->unit);
+    printf("  %-*s ", INDENT - 3, column->name);
+    wrap_print(stdout, INDENT, text);
+  }
+}
+
 static void help_output(void) {
+  const struct model_kind *kind;
   fputs(SERIES_HELP, stdout);
+  print_columns(models_get(0));
+  for (int k = 1; (kind = models_get(k)) != NULL; k++) {
+    printf("\nThat of model = \"%s\" has the columns\n", kind->keys->name);
+    print_columns(kind);
+  }
+  fputs(PROFILE_HELP, stdout);
   fputs(SNAPSHOT_HELP, stdout);
 }
 

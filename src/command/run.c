@@ -16,6 +16,7 @@
 #include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/mesh.h"
+#include "talus/model.h"
 #include "talus/old_run.h"
 #include "talus/output.h"
 #include "talus/parameter_changes.h"
@@ -28,15 +29,6 @@
 #include "talus/series.h"
 #include "talus/signals.h"
 #include "talus/snapshot.h"
-#include "talus/two_phase/closure_fields.h"
-#include "talus/two_phase/creep.h"
-#include "talus/two_phase/fractions.h"
-#include "talus/two_phase/measure.h"
-#include "talus/two_phase/percolation.h"
-#include "talus/two_phase/rest.h"
-#include "talus/two_phase/state.h"
-#include "talus/two_phase/step.h"
-#include "talus/two_phase/step_floor.h"
 
 enum timed {
   TIME_START,
@@ -50,7 +42,7 @@ enum timed {
 struct run {
   const struct params *params;
   const struct run_options *options;
-  struct two_phase *sim;
+  struct model *model;
   struct series *series;
   struct profile *profile;
   struct snapshots *snapshots;
@@ -62,7 +54,7 @@ struct run {
   bool tables;            /* of before the restart are there, to be continued */
   double wall_checkpoint; /* when the last one was written */
   struct run_size size;   /* of it at the start */
-  double least_dt;        /* step_floor.h */
+  double least_dt;        /* s, shorter steps make no sense */
   struct run_state before; /* when this invocation began */
   double wall_begin;       /* then */
   int64_t first_step;      /* the step then */
@@ -78,13 +70,13 @@ static bool same_time(const struct run *run, double a, double b) {
 }
 
 static bool at_end(const struct run *run) {
-  double time = run->sim->time, stop = run->params->stop;
+  double time = run->model->time, stop = run->params->stop;
   return run->at_rest || time >= stop || same_time(run, time, stop);
 }
 
 /* The next time a step must land on. */
 static double next_event(const struct run *run) {
-  double time = run->sim->time, next = run->params->stop;
+  double time = run->model->time, next = run->params->stop;
   for (int k = 0; k < run->params->nprofile_times; k++) {
     double t = run->params->profile_times[k];
     if (t > time && t < next && !same_time(run, t, time)) next = t;
@@ -94,25 +86,25 @@ static double next_event(const struct run *run) {
 
 /* Largest next step: it ends on the event or leaves a whole step before it. */
 static double step_bound(const struct run *run, double event) {
-  double left = event - run->sim->time, dt = run->sim->dt;
+  double left = event - run->model->time, dt = run->model->dt;
   return dt > 0 && left > dt * (1 + 1e-9) && left < 2 * dt ? 0.5 * left : left;
 }
 
 static bool outline_due(const struct run *run) {
   if (at_end(run)) return true;
   for (int k = 0; k < run->params->nprofile_times; k++)
-    if (same_time(run, run->sim->time, run->params->profile_times[k]))
+    if (same_time(run, run->model->time, run->params->profile_times[k]))
       return true;
   return false;
 }
 
 /* Snapshots do not bind the steps: the first step at or after the time. */
 static bool snapshot_due(const struct run *run) {
-  double every = run->params->snapshot_every, time = run->sim->time;
-  if (run->sim->step == 0 || at_end(run)) return true;
+  double every = run->params->snapshot_every, time = run->model->time;
+  if (run->model->step == 0 || at_end(run)) return true;
   if (every <= 0) return false;
   return floor(time / every + 1e-9) >
-         floor((time - run->sim->dt) / every + 1e-9);
+         floor((time - run->model->dt) / every + 1e-9);
 }
 
 static double lap(struct run *run, enum timed what, double since) {
@@ -125,86 +117,42 @@ static double wall_seconds(const struct run *run) {
   return run->before.wall_seconds + MPI_Wtime() - run->wall_begin;
 }
 
-static void write_row(struct run *run, const struct diagnostics *d) {
-  const struct two_phase *sim = run->sim;
-  const struct energy *energy = &sim->energy;
-  const double given = d->gas - energy->gas + energy->gas_dissipated;
-  struct series_row row = {.step = sim->step,
-                           .time = sim->time,
-                           .dt = sim->dt,
-                           .cells = forest_nleaves_global(sim->grid.forest),
-                           .front = d->front,
-                           .height = d->height,
-                           .volume = d->volume,
-                           .kinetic = d->kinetic,
-                           .potential = d->potential,
-                           .dissipated = energy->dissipated,
-                           .max_speed = d->max_speed,
-                           .pressure_iterations = sim->pressure.iterations,
-                           .viscous_iterations = sim->viscous.iterations,
-                           .wall_seconds = wall_seconds(run),
-                           .droplets = d->droplets.n,
-                           .droplet_volume = d->droplets.volume,
-                           .numerical = energy->initial + energy->changed -
-                                        d->kinetic - d->potential -
-                                        energy->dissipated - given,
-                           .divergence_volume = sim->divergence_volume,
-                           .pressure_residual = sim->pressure.residual_after,
-                           .viscous_residual = sim->viscous.residual_after,
-                           .mean_shear_rate = d->shear_rate,
-                           .repeat_change = sim->repeat_change,
-                           .work_of_changes = energy->changed,
-                           .given_to_gas = given};
-  series_write(run->series, &row);
-}
-
-/* Before the first step: is there anything to simulate? */
-static void check_grains(const struct run *run, double volume) {
-  static const char *const text =
-      "grains.shape is positive nowhere: there are no grains";
-  if (run->params->single_phase || volume > 0 || base_rank() != 0) return;
-  if (params_bring_grains(run->params)) return;
-  fprintf(stderr, "talus: warning: %s\n", text);
-  log_info("warning: %s", text);
-}
-
 /* Rows of both tables, where they are due. */
 static void write_tables(struct run *run) {
-  struct two_phase *sim = run->sim;
+  struct model *model = run->model;
   int every = run->params->series_every;
-  bool row = at_end(run) || every <= 1 || sim->step % every == 0;
+  bool row = at_end(run) || every <= 1 || model->step % every == 0;
   bool outline = outline_due(run);
   if (!row && !outline) return;
-  struct diagnostics d;
-  fractions_synchronise(sim);
-  diagnostics_measure(sim, &d);
-  if (outline) diagnostics_measure_layers(sim, &d);
-  fractions_desynchronise(sim);
-  sim->energy.kinetic = d.kinetic;
-  sim->energy.potential = d.potential;
-  if (sim->step == 0) {
-    sim->energy.initial = d.kinetic + d.potential;
-    sim->energy.gas = d.gas;
-    check_grains(run, d.volume);
-    creep_say(run->params, d.height);
+  struct model_outline heap;
+  double *value = MEM_NEW(double, (size_t)model->kind->ncolumns);
+  model->wall_seconds = wall_seconds(run);
+  model->kind->measure(model, value, outline ? &heap : NULL);
+  if (row) series_write(run->series, value);
+  if (outline) {
+    profile_write(run->profile, model->time, heap.outline.n, heap.outline.first,
+                  heap.outline.spacing, heap.outline.height, heap.layer);
+    model_outline_free(&heap);
   }
-  if (row) write_row(run, &d);
-  if (outline)
-    profile_write(run->profile, sim->time, d.outline.n, d.outline.first,
-                  d.outline.spacing, d.outline.height, d.layer);
-  diagnostics_free(&d);
+  mem_free(value);
+}
+
+/* Make the fields of a snapshot that are not kept, or free them. */
+static void make_outputs(struct model *model, bool make) {
+  if (model->kind->outputs != NULL) model->kind->outputs(model, make);
 }
 
 static void write_snapshot(struct run *run) {
   if (!snapshot_due(run)) return;
-  const struct two_phase *sim = run->sim;
-  closure_fields_update(sim);
-  struct snapshot_heading heading = {.time = sim->time,
-                                     .step = sim->step,
+  struct model *model = run->model;
+  make_outputs(model, true);
+  struct snapshot_heading heading = {.time = model->time,
+                                     .step = model->step,
                                      .length_scale = run->params->length_scale,
                                      .parameters = run->parameters};
-  snapshots_write(run->snapshots, sim->grid.mesh, &sim->grid.fields, &heading);
-  closure_fields_release(sim);
+  snapshots_write(run->snapshots, model->grid->mesh, &model->grid->fields,
+                  &heading);
+  make_outputs(model, false);
 }
 
 /* Everything after a step, and before the first one, but the checkpoint. */
@@ -224,11 +172,11 @@ static void write_checkpoint(struct run *run) {
                             .snapshots = snapshots_count(run->snapshots),
                             .series = series_sync(run->series),
                             .profile = profile_sync(run->profile)};
-  run_state_write(run->checkpoint_path, run->sim, &state, run->parameters);
+  run_state_write(run->checkpoint_path, run->model, &state, run->parameters);
   run->checkpoint_written = true;
   run->wall_checkpoint = lap(run, TIME_CHECKPOINT, begin);
-  log_info("step %" PRId64 ", time %.10g: checkpoint", run->sim->step,
-           run->sim->time);
+  log_info("step %" PRId64 ", time %.10g: checkpoint", run->model->step,
+           run->model->time);
 }
 
 /* Begin and end */
@@ -258,9 +206,10 @@ static void check_tables(struct run *run) {
   if (!run->options->restart) return;
   run->tables = output_holds_tables(directory);
   if (!run->tables) return;
-  series_check(directory, &run->before.series, run->sim->step,
-               run->params->series_every);
-  profile_check(directory, run->params, &run->before.profile, run->sim->time);
+  const struct model_kind *kind = run->model->kind;
+  series_check(directory, kind->ncolumns, kind->columns, &run->before.series,
+               run->model->step, run->params->series_every);
+  profile_check(directory, run->params, &run->before.profile, run->model->time);
 }
 
 static void open_files(struct run *run) {
@@ -277,7 +226,9 @@ static void open_files(struct run *run) {
   mem_free(path);
   compare_parameters(run);
   output_write_text(directory, "parameters.csv", run->parameters);
-  run->series = series_open(directory, run->tables ? &before->series : NULL);
+  const struct model_kind *kind = run->model->kind;
+  run->series = series_open(directory, kind->ncolumns, kind->columns,
+                            run->tables ? &before->series : NULL);
   run->profile = profile_open(directory, run->params,
                               run->tables ? &before->profile : NULL);
   run->snapshots = snapshots_new(directory, (int)run->before.snapshots);
@@ -286,7 +237,7 @@ static void open_files(struct run *run) {
 static void say_begin(const struct run *run) {
   static const char *const alone =
       "the checkpoint stands alone: series.csv and profile.csv begin here";
-  const struct two_phase *sim = run->sim;
+  const struct model *model = run->model;
   char date[64] = "", size[RUN_SIZE_LENGTH];
   time_t now = time(NULL);
   strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S", localtime(&now));
@@ -296,12 +247,12 @@ static void say_begin(const struct run *run) {
   for (int k = 0; k < run->params->ncovers; k++)
     log_info("%s", run->params->cover[k]);
   log_info("%s at step %" PRId64 ", time %.10g with %" PRId64 " cells",
-           run->options->restart ? "restart" : "start", sim->step, sim->time,
-           forest_nleaves_global(sim->grid.forest));
+           run->options->restart ? "restart" : "start", model->step,
+           model->time, forest_nleaves_global(model->grid->forest));
   run_size_text(&run->size, size);
   log_info("size: %s", size);
   progress_say(run->progress, "%s: %" PRId64 " cells on %d rank%s, to time %g",
-               run->params->name, forest_nleaves_global(sim->grid.forest),
+               run->params->name, forest_nleaves_global(model->grid->forest),
                base_size(), base_size() == 1 ? "" : "s", run->params->stop);
   if (!run->options->restart || run->tables) return;
   log_info("%s", alone);
@@ -333,14 +284,15 @@ static struct run *run_new(const struct params *params,
   run->checkpoint_written = options->restart;
   run->memory = (double)mem_peak_resident();
   run->progress = progress_new(params->stop, options->quiet);
-  run->sim = run_start(params, options->restart ? run->checkpoint_path : NULL,
-                       run->progress, &run->before, &run->size);
-  run->least_dt = step_floor(run->sim);
+  run->model = run_start(params, options->restart ? run->checkpoint_path : NULL,
+                         run->progress, &run->before, &run->size);
+  const struct model_kind *kind = run->model->kind;
+  run->least_dt = kind->least_dt != NULL ? kind->least_dt(run->model) : 0;
   check_tables(run);
   signals_remember();
   open_files(run);
-  if (options->restart) conditions_renew(run->sim);
-  run->first_step = run->sim->step;
+  if (options->restart && kind->renew != NULL) kind->renew(run->model);
+  run->first_step = run->model->step;
   run->wall_begin = run->wall_checkpoint = lap(run, TIME_START, begin);
   say_begin(run);
   return run;
@@ -351,7 +303,7 @@ static void run_destroy(struct run *run) {
   snapshots_destroy(run->snapshots);
   profile_close(run->profile);
   series_close(run->series);
-  two_phase_destroy(run->sim);
+  run->model->kind->destroy(run->model);
   mem_free(run->parameters);
   mem_free(run->checkpoint_path);
   log_close();
@@ -370,43 +322,34 @@ static void say_time(const struct run *run, const char *indent,
 static void say_timing(const struct run *run) {
   static const char *const title[] = {
       "start", "steps", "tables (series, profile)", "snapshots", "checkpoints"};
-  static const char *const stage[NSTAGES] = {
-      "volume fraction", "density, gravity", "rheology",   "advection",
-      "viscous solve",   "pressure",         "adaptation", "other"};
+  const struct model_kind *kind = run->model->kind;
   double all = 0;
   for (int k = 0; k < NTIMED; k++) all += run->seconds[k];
   for (int k = 0; k < NTIMED; k++) {
     say_time(run, "", title[k], run->seconds[k], all);
-    for (int s = 0; s < NSTAGES && k == TIME_STEP; s++)
-      say_time(run, "  ", stage[s], run->sim->seconds[s], all);
+    for (int s = 0; s < kind->nstages && k == TIME_STEP; s++)
+      say_time(run, "  ", kind->stages[s], run->model->stopwatch.seconds[s],
+               all);
   }
   progress_say(run->progress, "  per cell and step       %11.0f ns",
                1e9 * run->seconds[TIME_STEP] / fmax(run->cell_steps, 1));
-  const double memory =
-      mesh_sum(run->sim->grid.mesh, (double)mem_peak_resident() - run->memory);
+  const double memory = mesh_sum(run->model->grid->mesh,
+                                 (double)mem_peak_resident() - run->memory);
   progress_say(run->progress, "  memory per cell         %11.0f bytes",
                memory / fmax((double)run->most_cells, 1));
 }
 
-static void log_percolation(const struct two_phase *sim) {
-  if (!(sim->percolation.volume > 0)) return;
-  log_info(
-      "gas that grains enclosed has left through them: %.6g m^%d so far, "
-      "at the pace of a permeability of %.3g m^2",
-      sim->percolation.volume, DIM, percolation_permeability(sim));
-}
-
 static void say_end(const struct run *run, const char *why) {
-  const struct two_phase *sim = run->sim;
+  const struct model *model = run->model;
   double wall = MPI_Wtime() - run->wall_begin;
-  int64_t steps = sim->step - run->first_step;
+  int64_t steps = model->step - run->first_step;
   char line[512];
   snprintf(line, sizeof line,
            "%s%s at step %" PRId64 ", time %.6g: %" PRId64
            " steps in %.2f s (%.1f steps/s)",
-           at_end(run) ? "" : "stopped by ", why, sim->step, sim->time, steps,
-           wall, (double)steps / fmax(wall, 1e-9));
-  log_percolation(sim);
+           at_end(run) ? "" : "stopped by ", why, model->step, model->time,
+           steps, wall, (double)steps / fmax(wall, 1e-9));
+  if (model->kind->say_end != NULL) model->kind->say_end(model);
   log_info("end: %s", line);
   progress_say(run->progress, "%s", line);
   if (at_end(run)) {
@@ -432,7 +375,7 @@ static void say_failure(const struct run *run) {
            "with smaller steps too (run.log says which); the state before "
            "that is in %s, --restart goes on from it: try a larger tolerance, "
            "more solver.max_iterations or a smaller eta_max",
-           run->sim->step, run->sim->time, run->checkpoint_path);
+           run->model->step, run->model->time, run->checkpoint_path);
   fprintf(stderr, "talus: error: %s\n", line);
   log_info("error: %s", line);
 }
@@ -457,7 +400,7 @@ static struct verdict agree(const struct run *run) {
 /* Give the reason to stop now; NULL: the run goes on. */
 static const char *reason_to_stop(const struct run *run,
                                   const struct verdict *verdict) {
-  int64_t steps = run->sim->step - run->first_step;
+  int64_t steps = run->model->step - run->first_step;
   if (at_end(run)) return run->at_rest ? "at rest" : "done";
   if (verdict->signal != 0) return signals_name(verdict->signal);
   if (verdict->out_of_time) return "--max-walltime";
@@ -469,12 +412,12 @@ static const char *reason_to_stop(const struct run *run,
 /* One step, its clock set to the event it was meant to reach. *taken is how it
  * began. */
 static int advance(struct run *run, struct step_taken *taken) {
-  struct two_phase *sim = run->sim;
+  struct model *model = run->model;
   double begin = MPI_Wtime(), event = next_event(run);
-  *taken = (struct step_taken){sim->time, sim->dt, step_bound(run, event)};
-  int status = step_advance(sim, taken->dt_max);
-  if (same_time(run, sim->time, event)) sim->time = event;
-  const int64_t cells = forest_nleaves_global(sim->grid.forest);
+  *taken = (struct step_taken){model->time, model->dt, step_bound(run, event)};
+  int status = model->kind->advance(model, taken->dt_max);
+  if (same_time(run, model->time, event)) model->time = event;
+  const int64_t cells = forest_nleaves_global(model->grid->forest);
   run->cell_steps += (double)cells;
   if (cells > run->most_cells) run->most_cells = cells;
   lap(run, TIME_STEP, begin);
@@ -490,20 +433,22 @@ static int try_step(struct run *run) {
     say_failure(run);
     return status;
   }
-  if (run->sim->grid.outgrown > 0) {
-    run_size_say_outgrown(&run->size, run->sim->grid.outgrown);
+  if (run->model->grid->outgrown > 0) {
+    run_size_say_outgrown(&run->size, run->model->grid->outgrown);
     return EXIT_SYSTEM;
   }
-  return step_is_too_short(run->sim, run->least_dt, &taken) ? EXIT_NUMERICAL
-                                                            : EXIT_DONE;
+  const struct model_kind *kind = run->model->kind;
+  const bool short_step = kind->is_too_short != NULL &&
+                          kind->is_too_short(run->model, run->least_dt, &taken);
+  return short_step ? EXIT_NUMERICAL : EXIT_DONE;
 }
 
 static int run_loop(struct run *run) {
-  const struct two_phase *sim = run->sim;
+  const struct model *model = run->model;
   for (;;) {
     struct verdict verdict = agree(run);
     const char *why = reason_to_stop(run, &verdict);
-    bool fresh = sim->step > run->first_step || !run->checkpoint_written;
+    bool fresh = model->step > run->first_step || !run->checkpoint_written;
     if (fresh && (why != NULL || verdict.checkpoint)) write_checkpoint(run);
     if (why != NULL) {
       say_end(run, why);
@@ -514,10 +459,11 @@ static int run_loop(struct run *run) {
       write_checkpoint(run);
       return status;
     }
-    run->at_rest = rest_is_reached(run->sim);
+    run->at_rest =
+        model->kind->is_at_rest != NULL && model->kind->is_at_rest(run->model);
     write_output(run);
-    progress_step(run->progress, sim->step, sim->time, sim->dt,
-                  forest_nleaves_global(sim->grid.forest));
+    progress_step(run->progress, model->step, model->time, model->dt,
+                  forest_nleaves_global(model->grid->forest));
   }
 }
 

@@ -105,20 +105,31 @@ static void write_field(struct hdf5_file *file, const struct mesh *mesh,
   hdf5_write_text(file, path, "title", field->title);
 }
 
-static void write_scalars(struct hdf5_file *file, int n,
-                          const struct checkpoint_scalar *scalars) {
-  hdf5_write_group(file, "state");
-  for (int k = 0; k < n; k++) {
-    if (scalars[k].real != NULL)
-      hdf5_write_real(file, "state", scalars[k].name, 1, scalars[k].real);
+/* Give the number as the file holds it. */
+static double value_of(const struct scalar *scalar, const void *of) {
+  const void *at = (const char *)of + scalar->offset;
+  if (scalar->type == SCALAR_INTEGER) return (double)*(const int64_t *)at;
+  if (scalar->type == SCALAR_INT) return *(const int *)at;
+  const double value = *(const double *)at;
+  return isnan(value) && isinf(scalar->high) ? INFINITY : value;
+}
+
+static void write_scalars(struct hdf5_file *file,
+                          const struct scalars *scalars) {
+  for (int k = 0; k < scalars->n; k++) {
+    const struct scalar *s = &scalars->list[k];
+    const double real = value_of(s, scalars->of);
+    const int64_t integer = s->type == SCALAR_REAL ? 0 : (int64_t)real;
+    if (s->type == SCALAR_REAL)
+      hdf5_write_real(file, "state", s->name, 1, &real);
     else
-      hdf5_write_integer(file, "state", scalars[k].name, 1, scalars[k].integer);
+      hdf5_write_integer(file, "state", s->name, 1, &integer);
   }
 }
 
-void checkpoint_write(const char *path, const struct mesh *mesh,
-                      const struct fields *fields, int n,
-                      const struct checkpoint_scalar *scalars,
+void checkpoint_write(const char *path, const char *model,
+                      const struct mesh *mesh, const struct fields *fields,
+                      int n, const struct scalars scalars[],
                       const char *parameters) {
   char draft[PATH_LENGTH];
   int length = snprintf(draft, sizeof draft, "%s.tmp", path);
@@ -127,7 +138,9 @@ void checkpoint_write(const char *path, const struct mesh *mesh,
   output_write_heading(file, parameters);
   write_layout(file, forest_layout(mesh->forest));
   write_forest(file, mesh->forest);
-  write_scalars(file, n, scalars);
+  hdf5_write_text(file, "/", "model", model);
+  hdf5_write_group(file, "state");
+  for (int k = 0; k < n; k++) write_scalars(file, &scalars[k]);
   hdf5_write_group(file, "fields");
   for (int k = 0; k < fields->n; k++)
     if (fields->field[k]->restart) write_field(file, mesh, fields->field[k]);
@@ -196,11 +209,24 @@ static void compare_layout(struct hdf5_file *file, const char *path,
   }
 }
 
+static void compare_model(struct hdf5_file *file, const char *path,
+                          const char *model) {
+  char found[NAME_LENGTH];
+  if (!hdf5_read_text(file, "/", "model", sizeof found, found)) return;
+  if (strcmp(found, model) != 0)
+    USER_ERROR(
+        "'%s' belongs to a run of model = \"%s\", and the case is of model = "
+        "\"%s\"; take the case of that run, or start afresh without --restart",
+        path, found, model);
+}
+
 struct checkpoint *checkpoint_open(MPI_Comm comm, const char *path,
+                                   const char *model,
                                    const struct forest_layout *layout) {
   check_seal(comm, path);
   struct hdf5_file *file = hdf5_open(comm, path);
   if (file == NULL) USER_ERROR("'%s' is no checkpoint of talus", path);
+  compare_model(file, path, model);
   compare_layout(file, path, layout);
   struct checkpoint *checkpoint = MEM_NEW(struct checkpoint, 1);
   checkpoint->file = file;
@@ -360,32 +386,50 @@ void checkpoint_read_fields(struct checkpoint *checkpoint,
 
 /* Refuses a number out of its range. */
 static void check_scalar(const struct checkpoint *checkpoint,
-                         const struct checkpoint_scalar *s) {
-  const bool bounded = s->low != 0 || s->high != 0;
-  const double value = s->real != NULL ? *s->real : (double)*s->integer;
-  if (bounded ? value >= s->low && value <= s->high : isfinite(value)) return;
-  char range[64] = "a finite number";
-  if (bounded && s->high < DBL_MAX)
+                         const struct scalar *s, double value) {
+  if (value >= s->low && value <= s->high) return;
+  char range[64];
+  if (s->high < DBL_MAX)
     snprintf(range, sizeof range, "a number from %g to %g", s->low, s->high);
-  else if (bounded)
+  else if (s->low > -DBL_MAX)
     snprintf(range, sizeof range, "a finite number of at least %g", s->low);
+  else
+    snprintf(range, sizeof range, "a finite number");
   USER_ERROR(
       "'%s' is damaged or was edited: %s = %.17g, %s is needed; take another "
       "copy of it, or start afresh without --restart",
       checkpoint->path, s->name, value, range);
 }
 
-void checkpoint_read_scalars(struct checkpoint *checkpoint, int n,
-                             const struct checkpoint_scalar *scalars) {
-  for (int k = 0; k < n; k++) {
-    const struct checkpoint_scalar *s = &scalars[k];
-    bool found = s->real != NULL ? hdf5_read_real(checkpoint->file, "state",
-                                                  s->name, 1, s->real)
-                                 : hdf5_read_integer(checkpoint->file, "state",
-                                                     s->name, 1, s->integer);
-    if (!found)
-      USER_ERROR("'%s' has no '%s'; it was written by another version of talus",
-                 checkpoint->path, s->name);
-    check_scalar(checkpoint, s);
+static void read_scalar(const struct checkpoint *checkpoint,
+                        const struct scalar *s, void *of) {
+  void *at = (char *)of + s->offset;
+  double real = 0;
+  int64_t integer = 0;
+  const bool found =
+      s->type == SCALAR_REAL
+          ? hdf5_read_real(checkpoint->file, "state", s->name, 1, &real)
+          : hdf5_read_integer(checkpoint->file, "state", s->name, 1, &integer);
+  if (!found)
+    USER_ERROR("'%s' has no '%s'; it was written by another version of talus",
+               checkpoint->path, s->name);
+  check_scalar(checkpoint, s, s->type == SCALAR_REAL ? real : (double)integer);
+  switch (s->type) {
+    case SCALAR_REAL:
+      *(double *)at = real;
+      break;
+    case SCALAR_INTEGER:
+      *(int64_t *)at = integer;
+      break;
+    case SCALAR_INT:
+      *(int *)at = (int)integer;
+      break;
   }
+}
+
+void checkpoint_read_scalars(struct checkpoint *checkpoint, int n,
+                             const struct scalars scalars[]) {
+  for (int k = 0; k < n; k++)
+    for (int i = 0; i < scalars[k].n; i++)
+      read_scalar(checkpoint, &scalars[k].list[i], scalars[k].of);
 }

@@ -65,8 +65,8 @@ void conditions_measure(struct two_phase *sim, struct conditions *conditions) {
 /* Bring c, and the momentum that rides with it, to `time`. */
 static void end_lag(struct two_phase *sim) {
   fields_save(&sim->grid.fields, sim->grid.mesh);
-  fractions_advance(sim, 0.5 * sim->dt, time_step_rate(sim));
-  sim->dt = 0;
+  fractions_advance(sim, 0.5 * sim->model.dt, time_step_rate(sim));
+  sim->model.dt = 0;
 }
 
 static void start_anew(struct two_phase *sim) {

@@ -49,7 +49,7 @@ static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
   bool held = tracer == sim->c && sim->planes_hold;
   vof_freeze(sim->grid.mesh, tracer->v, sim->frozen->v);
   for (int s = 0; s < DIM; s++, held = false) {
-    const int d = (int)((sim->step + s) % DIM);
+    const int d = (int)((sim->model.step + s) % DIM);
     double *normal[DIM], *plane = (held ? sim->plane : sim->cell[DIM])->v;
     field_arrays(held ? sim->normal : sim->cell, normal);
     field_fill(sim->grid.mesh, tracer);
@@ -107,7 +107,7 @@ void fractions_carry(struct two_phase *sim, double dt, const double *u_f,
   vof_freeze(mesh, sim->c->v, sim->frozen->v);
   for (int s = 0; s < DIM; s++) {
     if (s > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
-    sweep_grains(sim, (int)((sim->step + s) % DIM), dt, u_f);
+    sweep_grains(sim, (int)((sim->model.step + s) % DIM), dt, u_f);
   }
   remove_dilation(sim, dt, source, sim->c->v);
 }
@@ -183,11 +183,11 @@ void fractions_synchronise(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double *before = sim->cell[C_OLD]->v;
   memcpy(before, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
-  if (sim->params->single_phase || sim->dt == 0) return;
-  advance_tracer(sim, 0.5 * sim->dt, sim->u_f->v, NULL, sim->c);
+  if (sim->params->single_phase || sim->model.dt == 0) return;
+  advance_tracer(sim, 0.5 * sim->model.dt, sim->u_f->v, NULL, sim->c);
   if (mesh_max(mesh, vof_excess(mesh, sim->c->v)) <= VOF_EMPTY) return;
   const bool held = sim->planes_hold;
-  const double half = 0.5 * sim->dt;
+  const double half = 0.5 * sim->model.dt;
   const int parts = parts_of(half * time_step_rate(sim), VOF_CFL);
   fractions_desynchronise(sim);
   for (int k = 0; k < parts; k++, sim->planes_hold = false) {
@@ -206,8 +206,8 @@ void fractions_read_tracer(struct two_phase *sim, int k, double *value) {
   const int32_t n = sim->grid.mesh->nleaves;
   double *before = MEM_NEW(double, (size_t)n);
   memcpy(before, tracer->v, (size_t)n * sizeof(double));
-  if (sim->dt > 0)
-    advance_tracer(sim, 0.5 * sim->dt, sim->u_f->v, NULL, tracer);
+  if (sim->model.dt > 0)
+    advance_tracer(sim, 0.5 * sim->model.dt, sim->u_f->v, NULL, tracer);
   memcpy(value, tracer->v, (size_t)n * sizeof(double));
   memcpy(tracer->v, before, (size_t)n * sizeof(double));
   mem_free(before);

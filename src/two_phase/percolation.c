@@ -303,8 +303,8 @@ static double potential(const struct two_phase *sim) {
 void percolation_advance(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const bool search =
-      sim->step % PERCOLATION_EVERY == 0 || sim->percolation.pockets > 0;
-  const bool thorough = sim->step % PERCOLATION_EVERY == 0;
+      sim->model.step % PERCOLATION_EVERY == 0 || sim->percolation.pockets > 0;
+  const bool thorough = sim->model.step % PERCOLATION_EVERY == 0;
   if (!sim->source || dt == 0) return;
   double *q = sim->source->v, *w = sim->carrier->v, *solid = sim->c->v;
   double *reach = sim->plane->v; /* scratch, as the planes are made anew */
@@ -339,7 +339,7 @@ double percolation_permeability(const struct two_phase *sim) {
     g2 += sim->params->gravity[d] * sim->params->gravity[d];
   }
   if (g2 == 0) return 0;
-  rheology_eval(&sim->params->gas.rheology, sim->time, 1, &shear_rate,
+  rheology_eval(&sim->params->gas.rheology, sim->model.time, 1, &shear_rate,
                 &pressure, &eta);
   return eta * sim->percolation.flow / sim->percolation.volume /
          (sim->params->grains.density * sqrt(g2));

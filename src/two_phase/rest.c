@@ -25,6 +25,6 @@ bool rest_is_reached(struct two_phase *sim) {
     sim->slow_time = 0;
     return false;
   }
-  sim->slow_time += sim->dt;
+  sim->slow_time += sim->model.dt;
   return sim->slow_time >= params->rest_time;
 }

@@ -4,6 +4,7 @@
 #include "talus/clean.h"
 #include "talus/forest.h"
 #include "talus/minmax.h"
+#include "talus/model.h"
 #include "talus/openings.h"
 #include "talus/shapes.h"
 #include "talus/two_phase/state.h"

@@ -142,7 +142,7 @@ static void update_viscosity(struct two_phase *sim,
   fill_pressure(sim);
   properties_shear_rate(mesh, sim->skin, u, sim->face[0]->v);
   double *work[2] = {sim->face[1]->v, sim->face[2]->v};
-  properties_viscosity(mesh, sim->time, &params->grains,
+  properties_viscosity(mesh, sim->model.time, &params->grains,
                        params->single_phase ? NULL : &params->gas,
                        params->gravity, sim->c->v, normal, sim->plane->v,
                        sim->p->v, sim->grid.closed, sim->face[0]->v, work,
@@ -329,7 +329,7 @@ static void measure_repetition(struct two_phase *sim, int k) {
   }
   sim->repeat_change = mesh_max(mesh, change);
   log_info("step %lld, repetition %d: velocity changes by %.3g of %.3g",
-           (long long)sim->step, k, sim->repeat_change, sim->scale);
+           (long long)sim->model.step, k, sim->repeat_change, sim->scale);
 }
 
 /* Solves of one step: the iterations of both, and the worse of the two, so
@@ -432,7 +432,7 @@ static bool has_failed(const struct two_phase *sim) {
   const char *wild = fields_not_finite(&sim->grid.fields, sim->grid.mesh);
   bool failed = wild != NULL;
   if (failed) {
-    log_info("step %lld: %s is not finite", (long long)sim->step, wild);
+    log_info("step %lld: %s is not finite", (long long)sim->model.step, wild);
   }
   for (int k = 0; k < 3; k++) {
     const double tolerance = k < 2 ? params->tolerance_pressure
@@ -440,12 +440,12 @@ static bool has_failed(const struct two_phase *sim) {
     if (is_solved(solve[k], tolerance)) continue;
     if (solve[k]->status == SOLVE_INCOMPATIBLE) {
       log_info("step %lld: %s solve: what flows in does not flow out",
-               (long long)sim->step, name[k]);
+               (long long)sim->model.step, name[k]);
     }
     log_info(
         "step %lld: %s solve stalled after %d iterations, residual %g of "
         "%g, tolerance %g",
-        (long long)sim->step, name[k], solve[k]->iterations,
+        (long long)sim->model.step, name[k], solve[k]->iterations,
         solve[k]->residual_after, solve[k]->residual_before, tolerance);
     failed = true;
   }
@@ -454,14 +454,12 @@ static bool has_failed(const struct two_phase *sim) {
 
 /* The time since the last call was spent on this stage. */
 static void lap(struct two_phase *sim, enum step_stage stage) {
-  const double now = MPI_Wtime();
-  sim->seconds[stage] += now - sim->mark;
-  sim->mark = now;
+  stopwatch_lap(&sim->model.stopwatch, stage);
 }
 
 /* Stages 3 to 8: the state at `time` + dt. */
 static void advance_state(struct two_phase *sim, double dt, double rate) {
-  const double dt_c = 0.5 * (sim->dt + dt);
+  const double dt_c = 0.5 * (sim->model.dt + dt);
   fractions_advance(sim, dt_c, rate);
   percolation_advance(sim, dt_c), lap(sim, STAGE_FRACTION);
   update_density(sim);
@@ -509,22 +507,23 @@ static double find_step(struct two_phase *sim, double dt_max) {
     set_back(sim, &before);
     failures += failed;
     if (failures > RETRIES) break;
-    log_info("step %lld: dt %.3g is repeated with %.3g", (long long)sim->step,
-             dt, dt_max);
+    log_info("step %lld: dt %.3g is repeated with %.3g",
+             (long long)sim->model.step, dt, dt_max);
   }
   return 0;
 }
 
 int step_advance(struct two_phase *sim, double dt_max) {
-  sim->mark = MPI_Wtime();
+  stopwatch_start(&sim->model.stopwatch);
   const double dt = find_step(sim, dt_max);
   if (dt == 0) return EXIT_NUMERICAL;
-  sim->time += dt;
-  sim->dt = dt;
-  sim->step++;
+  sim->model.time += dt;
+  sim->model.dt = dt;
+  sim->model.step++;
   add_travel(sim, dt);
   set_cell_viscosity(sim), lap(sim, STAGE_OTHER);
-  if (adapt_is_due(&sim->grid, sim->step, sim->travel)) two_phase_adapt(sim);
+  if (adapt_is_due(&sim->grid, sim->model.step, sim->travel))
+    two_phase_adapt(sim);
   lap(sim, STAGE_ADAPTATION);
   clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open,
                       sim->u_f->v);

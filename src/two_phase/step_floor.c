@@ -102,8 +102,8 @@ static void place_text(const struct worst *worst, size_t size, char *text) {
 static void cause_text(const struct two_phase *sim, const struct worst *flow,
                        const struct worst *forces, size_t size, char *text) {
   /* 0.1: the part of sqrt(h/g) that time_step.h allows */
-  const double by_flow = log(flow->rate * sim->dt / sim->params->cfl);
-  const double by_forces = log(forces->rate * sim->dt / 0.1);
+  const double by_flow = log(flow->rate * sim->model.dt / sim->params->cfl);
+  const double by_forces = log(forces->rate * sim->model.dt / 0.1);
   char place[160];
   place_text(forces, sizeof place, place);
   if (by_flow < -2 && by_forces < -2)
@@ -131,18 +131,20 @@ static void explain(const struct two_phase *sim, double floor) {
            ", time %.6g: its dt = %.3g is below %.3g, with which it would "
            "never end; %s; the largest speed is %.3g %s. Are the speeds and "
            "forces of the case what they should be?",
-           sim->step, sim->time, sim->dt, floor, cause, flow.value, place);
+           sim->model.step, sim->model.time, sim->model.dt, floor, cause,
+           flow.value, place);
   fprintf(stderr, "talus: error: %s\n", line);
   log_info("error: %s", line);
 }
 
 bool step_is_too_short(const struct two_phase *sim, double floor,
                        const struct step_taken *taken) {
-  const double dt = sim->dt, most = min2(taken->dt_max, sim->params->dt_max);
-  const bool stands = sim->time == taken->time;
+  const double dt = sim->model.dt,
+               most = min2(taken->dt_max, sim->params->dt_max);
+  const bool stands = sim->model.time == taken->time;
   const bool bound_by_flow = dt < most * (1 - 1e-9);
   const bool grows = taken->last_dt > 0 && dt >= GROWS * taken->last_dt;
   if (!stands && !(dt < floor && bound_by_flow && !grows)) return false;
-  explain(sim, stands ? max2(floor, DBL_EPSILON * sim->time) : floor);
+  explain(sim, stands ? max2(floor, DBL_EPSILON * sim->model.time) : floor);
   return true;
 }

@@ -89,10 +89,10 @@ double time_step_choose(const struct two_phase *sim, double dt_max,
   *rate = time_step_rate(sim);
   dt = min2(dt, cfl_bound(sim, max2(boundary, *rate)));
   dt = min2(dt, acceleration_bound(sim));
-  if (sim->dt > 0) {
+  if (sim->model.dt > 0) {
     const double bound = cfl_bound(sim, *rate);
-    dt = min2(dt, DT_GROWTH * sim->dt);
-    dt = min2(dt, max2(2 * bound - sim->dt, DT_SHRINK * bound));
+    dt = min2(dt, DT_GROWTH * sim->model.dt);
+    dt = min2(dt, max2(2 * bound - sim->model.dt, DT_SHRINK * bound));
   }
   return dt;
 }

@@ -55,7 +55,7 @@ static inline void carried_set_faces(struct carried *c) {
 
 /* Path from `time` to `time` + dt. */
 static inline double carried_path(const struct carried *c, double dt) {
-  const double time = c->sim->time;
+  const double time = c->sim->model.time;
   if (!c->flow->path) return dt;
   return c->flow->path(time + dt) - c->flow->path(time);
 }
@@ -63,7 +63,7 @@ static inline double carried_path(const struct carried *c, double dt) {
 /* dt in which the steady flow would have gone as far as the bound allows, not
  * beyond the turn or the end. */
 static inline double carried_dt(const struct carried *c) {
-  const double time = c->sim->time, turn = c->flow->turn;
+  const double time = c->sim->model.time, turn = c->flow->turn;
   const double most = courant_dt(c->sim->grid.mesh, c->steady, 0.5);
   double low = 0, high = (time < turn ? turn : c->flow->end) - time;
   if (fabs(carried_path(c, high)) <= most) return high;
@@ -87,7 +87,8 @@ static inline void carried_adapt(struct carried *c, double dt) {
     }
   }
   sim->travel += travel;
-  if (adapt_is_due(&sim->grid, sim->step, sim->travel) && two_phase_adapt(sim))
+  if (adapt_is_due(&sim->grid, sim->model.step, sim->travel) &&
+      two_phase_adapt(sim))
     carried_set_faces(c);
 }
 
@@ -104,11 +105,11 @@ static inline void carried_step(struct carried *c) {
   for (int32_t f = 0; f < sim->grid.mesh->nfaces_all; f++) {
     sim->u_f->v[f] = factor * c->steady[f];
   }
-  transport_step(&bench, &t, (int)(sim->step % DIM), dt);
+  transport_step(&bench, &t, (int)(sim->model.step % DIM), dt);
   const double volume = integral(sim->grid.mesh, sim->c->v);
   c->excess = larger(c->excess, transport_excess(&bench, &t));
   c->drift = larger(c->drift, fabs(volume / c->volume - 1));
-  sim->time += dt, sim->step++;
+  sim->model.time += dt, sim->model.step++;
   carried_adapt(c, dt);
 }
 
@@ -138,7 +139,7 @@ static inline double carried_run(const struct carried_flow *flow, int level,
   carried_set_faces(&c);
   carried_shape(&c, c.sim->c->v);
   c.volume = integral(c.sim->grid.mesh, c.sim->c->v);
-  while (c.sim->time < flow->end * (1 - 1e-12)) carried_step(&c);
+  while (c.sim->model.time < flow->end * (1 - 1e-12)) carried_step(&c);
   const double error = carried_error(&c);
   *drift = c.drift;
   two_phase_destroy(c.sim);

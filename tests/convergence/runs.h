@@ -50,8 +50,8 @@ static inline void example_destroy(struct example *example) {
 /* Step to `time`; false if a step fails. */
 static inline bool run_to(struct two_phase *sim, double time) {
   bool good = true;
-  while (good && sim->time < time * (1 - 1e-12)) {
-    good = step_advance(sim, time - sim->time) == EXIT_DONE;
+  while (good && sim->model.time < time * (1 - 1e-12)) {
+    good = step_advance(sim, time - sim->model.time) == EXIT_DONE;
   }
   return good;
 }
@@ -65,13 +65,13 @@ static inline double run_rate(const struct two_phase *sim) {
       most = larger(most, fabs(sim->u[d]->v[i] - sim->u_old[d]->v[i]));
     }
   }
-  return mesh_max(sim->grid.mesh, most) / sim->dt;
+  return mesh_max(sim->grid.mesh, most) / sim->model.dt;
 }
 
 /* Step until max |du/dt| < rate; false if that is not so at `time`. */
 static inline bool run_steady(struct two_phase *sim, double rate, double time) {
-  while (sim->time < time) {
-    if (step_advance(sim, time - sim->time) != EXIT_DONE) return false;
+  while (sim->model.time < time) {
+    if (step_advance(sim, time - sim->model.time) != EXIT_DONE) return false;
     if (run_rate(sim) < rate) return true;
   }
   return false;

@@ -58,7 +58,7 @@ static double vortex_error(int level, bool adapted, enum limiter limiter) {
   struct two_phase *sim = two_phase_new(&params);
   const bool good = run_to(sim, end);
   double *error = sim->frozen->v;
-  at[0].time = sim->time;
+  at[0].time = sim->model.time;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double x[3] = {sim->grid.mesh->x[i][0], sim->grid.mesh->x[i][1]};
     error[i] = sim->u[0]->v[i] - carried_vortices(&at[0], x);
@@ -105,8 +105,8 @@ static double strip_excess(enum limiter limiter) {
   }
   struct two_phase *sim = two_phase_new(&params);
   bool good = true;
-  while (good && sim->time < 1) {
-    good = step_advance(sim, 1 - sim->time) == EXIT_DONE;
+  while (good && sim->model.time < 1) {
+    good = step_advance(sim, 1 - sim->model.time) == EXIT_DONE;
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       const double v = sim->u[1]->v[i];
       most = larger(most, larger(-v, v - 1));

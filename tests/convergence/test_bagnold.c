@@ -21,7 +21,7 @@ static struct steady measure(const char *parameters, int trees, int level,
   struct example example =
       example_new("bagnold", parameters, trees, level, start);
   struct two_phase *sim = example.sim;
-  if (run_steady(sim, kBagnoldSteady, 1000)) out.time = sim->time;
+  if (run_steady(sim, kBagnoldSteady, 1000)) out.time = sim->model.time;
   if (run_steady(sim, kBagnoldSettled, 1000)) {
     const struct norms norms = bagnold_norms(sim, kSlope);
     out.l2 = norms.l2, out.most = norms.most;

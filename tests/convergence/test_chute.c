@@ -74,7 +74,7 @@ static struct steady measure(int level) {
     out.width = fabs(plug_width(sim) / (kFriction * kPressure) - 1);
     out.speed = fabs(plug_speed(sim) / exact(0) - 1);
     out.l2 = norms_of(sim->grid.mesh, error).l2;
-    out.time = sim->time;
+    out.time = sim->model.time;
   }
   example_destroy(&example);
   return out;

@@ -36,9 +36,9 @@ static void advance_heap(struct two_phase *sim, double dt_max,
                          struct heap *heap) {
   heap->good = step_advance(sim, dt_max) == EXIT_DONE;
   CHECK(heap->nsteps < MOST_STEPS, "more than %d steps", MOST_STEPS);
-  heap->dt[heap->nsteps++] = sim->dt;
+  heap->dt[heap->nsteps++] = sim->model.dt;
   const int count[2] = {sim->pressure.iterations, sim->viscous.iterations};
-  for (int k = 0; k < 2 && sim->step > 10; k++) {
+  for (int k = 0; k < 2 && sim->model.step > 10; k++) {
     if (count[k] > heap->iterations[k]) heap->iterations[k] = count[k];
   }
 }
@@ -54,8 +54,8 @@ static void run_collapse(int level, double box, const char *more,
   struct two_phase *sim = example.sim;
   memset(heap, 0, sizeof *heap);
   heap->good = true;
-  for (int k = 0; heap->good && sim->time < stop - 1e-9; k++) {
-    double dt_max = stop - sim->time;
+  for (int k = 0; heap->good && sim->model.time < stop - 1e-9; k++) {
+    double dt_max = stop - sim->model.time;
     if (steps && k < 2 * steps->nsteps) {
       dt_max = fmin(dt_max, 0.5 * steps->dt[k / 2]);
     }

@@ -61,7 +61,7 @@ static void follow(const struct two_phase *sim, struct track *track) {
     }
   }
   for (int d = 0; d < 2; d++) track->centre[d] += shift[d];
-  track->time = sim->time - 0.5 * sim->dt;
+  track->time = sim->model.time - 0.5 * sim->model.dt;
 }
 
 /* Mean velocity of the grains along x. */
@@ -106,7 +106,8 @@ static void run_ratio(struct report *report, const char *grid, double ratio,
   follow(sim, &now);
   from = now;
   speed = mean_speed(sim);
-  while (good && now.centre[0] - from.centre[0] < kTravel && sim->step < 2000) {
+  while (good && now.centre[0] - from.centre[0] < kTravel &&
+         sim->model.step < 2000) {
     good = step_advance(sim, 1) == EXIT_DONE;
     follow(sim, &now);
     fastest = larger(fastest, largest(sim, sim->u));
@@ -119,7 +120,7 @@ static void run_ratio(struct report *report, const char *grid, double ratio,
                  good ? shape_error(sim, &now) : NAN,
                  0.005 + 3.5 / ratio * kTravel * kTravel);
   report_value(report, grid, "largest |u|", 7, fastest);
-  report_value(report, grid, "steps", 7, (double)sim->step);
+  report_value(report, grid, "steps", 7, (double)sim->model.step);
   two_phase_destroy(sim);
 }
 

@@ -58,11 +58,11 @@ static struct drop run_drop(int level, double gap, double fall) {
   const double landed = sqrt(2 * gap) + 0.1 * sqrt(0.8);
   double least = energy_of(sim, &d);
   const double first = least, volume = d.volume;
-  for (bool seen = false; drop.good && sim->time < kStop * (1 - 1e-12);) {
+  for (bool seen = false; drop.good && sim->model.time < kStop * (1 - 1e-12);) {
     const double event = seen ? kStop : landed;
     diagnostics_free(&d);
-    drop.good = step_advance(sim, event - sim->time) == EXIT_DONE;
-    if (!seen && sim->time >= landed * (1 - 1e-12)) {
+    drop.good = step_advance(sim, event - sim->model.time) == EXIT_DONE;
+    if (!seen && sim->model.time >= landed * (1 - 1e-12)) {
       seen = true;
       drop.behind = mixed_behind_front(sim);
     }

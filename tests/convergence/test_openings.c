@@ -38,9 +38,9 @@ static double jet_error(double width, int level) {
   struct case_file *file = case_load_text("jet.lua", kJet, 2, override);
   struct two_phase *sim = two_phase_new(case_params(file));
   double most = 0;
-  while (sim->time < 2 * (1 - 1e-12) && isfinite(most)) {
-    if (step_advance(sim, 2 - sim->time) != EXIT_DONE) most = NAN;
-    const double time = sim->time - 0.5 * sim->dt; /* of c */
+  while (sim->model.time < 2 * (1 - 1e-12) && isfinite(most)) {
+    if (step_advance(sim, 2 - sim->model.time) != EXIT_DONE) most = NAN;
+    const double time = sim->model.time - 0.5 * sim->model.dt; /* of c */
     const double volume = integral(sim->grid.mesh, sim->c->v);
     most = fmax(most, fabs(volume / (width * 0.5 * time) - 1));
   }
@@ -58,10 +58,10 @@ static double silo_rate(const char *width, const char *inside) {
   int n = 0;
   struct example example = example_new("silo", "W=%s inside=%s", width, inside);
   struct two_phase *sim = example.sim;
-  while (good && sim->time < 4 * (1 - 1e-12)) {
-    good = step_advance(sim, 4 - sim->time) == EXIT_DONE;
-    if (sim->time < 2 || n == MOST) continue;
-    time[n] = sim->time - 0.5 * sim->dt;
+  while (good && sim->model.time < 4 * (1 - 1e-12)) {
+    good = step_advance(sim, 4 - sim->model.time) == EXIT_DONE;
+    if (sim->model.time < 2 || n == MOST) continue;
+    time[n] = sim->model.time - 0.5 * sim->model.dt;
     volume[n++] = integral(sim->grid.mesh, sim->c->v);
   }
   if (good) {

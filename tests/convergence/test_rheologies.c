@@ -96,7 +96,7 @@ static void report_laws(struct report *report) {
     struct example example = example_new("rheologies", "law=%s", law[k]);
     for (int i = 0; i < 3; i++) {
       const bool good = measure_at(&example, time[i] * sqrt(kAspect), &d[i]);
-      CHECK(good, "%s stops at %g", law[k], example.sim->time);
+      CHECK(good, "%s stops at %g", law[k], example.sim->model.time);
     }
     report_spreading(report, law[k], &d[1]);
     report_shape(report, law[k], &d[0], &d[2]);
@@ -237,8 +237,8 @@ static struct creep creep_of(int level, double eta_max, double bar) {
       example_new("column", "a=%g d=%g size=8 level=%d eta_max=%g", kAspect,
                   kGrain, level, eta_max);
   creep.good = measure_at(&example, 8, &first);
-  while (creep.good && example.sim->time < 12) {
-    creep.good = measure_at(&example, example.sim->time + 0.05, &d);
+  while (creep.good && example.sim->model.time < 12) {
+    creep.good = measure_at(&example, example.sim->model.time + 0.05, &d);
     creep.fastest = larger(creep.fastest, d.max_speed);
     creep.mean = larger(creep.mean, sqrt(2 * d.kinetic / d.volume));
     creep.part = larger(creep.part, faster_part(example.sim, bar));

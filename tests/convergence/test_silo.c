@@ -70,7 +70,7 @@ static double outlet_flux(struct two_phase *sim, struct discharge *out) {
     if (mesh->x[leaf][1] > mesh->h[leaf]) continue;
     sum -= u_f[f] * mesh->h[leaf];
     out->least = smaller(out->least, sim->c->v[leaf]);
-    if (sim->time > 0.1) out->slowest = smaller(out->slowest, -u_f[f]);
+    if (sim->model.time > 0.1) out->slowest = smaller(out->slowest, -u_f[f]);
   }
   return sum;
 }
@@ -79,10 +79,10 @@ static void record(struct two_phase *sim, double parts, struct discharge *out) {
   const int count[2] = {sim->pressure.iterations, sim->viscous.iterations};
   CHECK(out->n < MOST_STEPS, "more than %d steps", MOST_STEPS);
   /* c is half a step behind */
-  out->time[out->n] = sim->time - 0.5 * sim->dt;
+  out->time[out->n] = sim->model.time - 0.5 * sim->model.dt;
   out->volume[out->n++] = parts * integral(sim->grid.mesh, sim->c->v);
-  for (int k = 0; k < 2 && sim->step > 0; k++) {
-    if (sim->time > 0.1 && count[k] > out->iterations[k]) {
+  for (int k = 0; k < 2 && sim->model.step > 0; k++) {
+    if (sim->model.time > 0.1 && count[k] > out->iterations[k]) {
       out->iterations[k] = count[k];
     }
   }
@@ -97,10 +97,10 @@ static void run_silo(const char *overrides, double parts, double stop,
   out->good = true;
   out->least = out->slowest = HUGE_VAL;
   record(sim, parts, out);
-  while (out->good && sim->time < stop - 1e-12) {
-    const double rate = parts * outlet_flux(sim, out), before = sim->dt;
-    out->good = step_advance(sim, stop - sim->time) == EXIT_DONE;
-    out->outflow += rate * 0.5 * (before + sim->dt);
+  while (out->good && sim->model.time < stop - 1e-12) {
+    const double rate = parts * outlet_flux(sim, out), before = sim->model.dt;
+    out->good = step_advance(sim, stop - sim->model.time) == EXIT_DONE;
+    out->outflow += rate * 0.5 * (before + sim->model.dt);
     record(sim, parts, out);
   }
   if (!out->good) out->volume[out->n - 1] = NAN;

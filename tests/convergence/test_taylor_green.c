@@ -66,11 +66,11 @@ static double space_error(int level, bool adapted) {
   struct two_phase *sim = two_phase_new(&params);
   const double dt = 0.4 / (1 << level);
   bool good = true;
-  while (good && sim->time < kEnd - 1e-12) {
-    good = step_advance(sim, fmin(dt, kEnd - sim->time)) == EXIT_DONE;
+  while (good && sim->model.time < kEnd - 1e-12) {
+    good = step_advance(sim, fmin(dt, kEnd - sim->model.time)) == EXIT_DONE;
   }
   double *error = sim->frozen->v;
-  const double decay = exp(-2 * kThin * kWave * kWave * sim->time);
+  const double decay = exp(-2 * kThin * kWave * kWave * sim->model.time);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double x[3] = {sim->grid.mesh->x[i][0], sim->grid.mesh->x[i][1]};
     error[i] = sim->u[0]->v[i] - decay * vortices(&kAxis[0], x);
@@ -90,7 +90,8 @@ static double *crossed_run(int level, double viscosity, double time,
   const double dt = time / steps;
   bool good = true;
   for (int k = 0; k < steps && good; k++) {
-    good = step_advance(sim, dt) == EXIT_DONE && fabs(sim->dt / dt - 1) < 1e-12;
+    good = step_advance(sim, dt) == EXIT_DONE &&
+           fabs(sim->model.dt / dt - 1) < 1e-12;
   }
   const size_t n = (size_t)1 << (2 * level);
   double *u = good ? MEM_NEW(double, n) : NULL;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of a run: HDF5, checkpoints, snapshots, csv. */
 #include <check.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -207,15 +208,27 @@ static bool fields_are_set(const struct fields *fields,
   return good;
 }
 
+struct clock {
+  double time;
+  int64_t step;
+};
+
+static struct scalars clock_scalars(struct clock *clock) {
+  static const struct scalar list[] = {
+      {"time", SCALAR_REAL, offsetof(struct clock, time), -DBL_MAX, DBL_MAX},
+      {"step", SCALAR_INTEGER, offsetof(struct clock, step), 0, SCALAR_MOST}};
+  return (struct scalars){2, list, clock};
+}
+
 static void write_one(const char *path, struct forest *forest, double time) {
   struct mesh *mesh = mesh_new(forest);
   struct fields fields = {.n = 0};
-  int64_t step = 12;
-  struct checkpoint_scalar scalars[] = {{"time", &time, NULL, 0, 0},
-                                        {"step", NULL, &step, 0, 0}};
+  struct clock clock = {time, 12};
+  const struct scalars scalars = clock_scalars(&clock);
   add_fields(&fields, mesh);
   set_fields(&fields, mesh);
-  checkpoint_write(path, mesh, &fields, 2, scalars, "name,value\na,1\n");
+  checkpoint_write(path, "model", mesh, &fields, 1, &scalars,
+                   "name,value\na,1\n");
   fields_destroy(&fields);
   mesh_destroy(mesh);
 }
@@ -224,19 +237,18 @@ static void write_one(const char *path, struct forest *forest, double time) {
 static bool read_one(MPI_Comm comm, const char *path,
                      const struct forest_layout *layout, double time,
                      int32_t *leaves) {
-  struct checkpoint *checkpoint = checkpoint_open(comm, path, layout);
+  struct checkpoint *checkpoint = checkpoint_open(comm, path, "model", layout);
   struct forest *forest = checkpoint_forest(checkpoint, layout);
   struct mesh *mesh = mesh_new(forest);
   struct fields fields = {.n = 0};
-  double time_back = 0;
-  int64_t step = 0;
-  struct checkpoint_scalar scalars[] = {{"time", &time_back, NULL, 0, 0},
-                                        {"step", NULL, &step, 0, 0}};
+  struct clock clock = {0, 0};
+  const struct scalars scalars = clock_scalars(&clock);
   add_fields(&fields, mesh);
   checkpoint_read_fields(checkpoint, mesh, &fields);
-  checkpoint_read_scalars(checkpoint, 2, scalars);
+  checkpoint_read_scalars(checkpoint, 1, &scalars);
   checkpoint_close(checkpoint);
-  bool good = time_back == time && step == 12 && fields_are_set(&fields, mesh);
+  bool good =
+      clock.time == time && clock.step == 12 && fields_are_set(&fields, mesh);
   *leaves = mesh->nleaves;
   fields_destroy(&fields);
   mesh_destroy(mesh);
@@ -292,7 +304,8 @@ START_TEST(checkpoint_leaves_the_run_alone) {
     fields.field[1]->v[f] = 1.0 / (1 + f); /* no valid copies */
   double *before = MEM_NEW(double, mesh->nfaces_all);
   memcpy(before, fields.field[1]->v, sizeof(double) * mesh->nfaces_all);
-  checkpoint_write(path_of("checkpoint.h5"), mesh, &fields, 0, NULL, "");
+  checkpoint_write(path_of("checkpoint.h5"), "model", mesh, &fields, 0, NULL,
+                   "");
   bool good = memcmp(before, fields.field[1]->v,
                      sizeof(double) * mesh->nfaces_all) == 0;
   /* no draft is left */

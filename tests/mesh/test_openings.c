@@ -135,7 +135,7 @@ START_TEST(volume_is_that_of_the_jet) {
     good = good && step_advance(sim, 1) == EXIT_DONE;
   }
   const double volume = integral(sim->grid.mesh, sim->c->v);
-  const double time = sim->time - 0.5 * sim->dt;
+  const double time = sim->model.time - 0.5 * sim->model.dt;
   two_phase_destroy(sim);
   side_map_destroy(opening.map);
   ck_assert(good);

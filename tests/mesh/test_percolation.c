@@ -76,7 +76,7 @@ static struct effect percolate(const struct params *params, int calls,
   memcpy(start, sim->c->v, (size_t)sim->grid.mesh->nleaves * sizeof *start);
   for (int k = 0; k < calls; k++) {
     percolation_advance(sim, dt);
-    sim->step++;
+    sim->model.step++;
     effect.excess = fmax(effect.excess, vof_excess(sim->grid.mesh, sim->c->v));
   }
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {

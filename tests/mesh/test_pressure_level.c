@@ -132,8 +132,8 @@ static struct diagnostics collapse(enum pressure_at at, bool closed,
   rheology_set(&params.grains.rheology, "rho", 1);
   params.tolerance_pressure = params.tolerance_viscous = 1e-4;
   struct two_phase *sim = two_phase_new(&params);
-  while (*done && sim->time < 1) {
-    *done = step_advance(sim, 1 - sim->time) == EXIT_DONE;
+  while (*done && sim->model.time < 1) {
+    *done = step_advance(sim, 1 - sim->model.time) == EXIT_DONE;
   }
   struct diagnostics d;
   diagnostics_measure(sim, &d);

@@ -37,7 +37,7 @@ START_TEST(rest_is_slowness_for_a_time_without_break) {
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   bool reached[6];
   const double speed[6] = {0.01, 0.2, 0.01, 0.01, 0.05, 0.01};
-  sim->dt = 0.3;
+  sim->model.dt = 0.3;
   for (int k = 0; k < 6; k++) {
     set_one(sim, 1, speed[k]);
     reached[k] = rest_is_reached(sim);

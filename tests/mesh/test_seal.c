@@ -52,13 +52,15 @@ static void write_checkpoint(void) {
   struct mesh *mesh = mesh_new(forest);
   struct fields fields = {.n = 0};
   double time = 1.0 / 3;
-  struct checkpoint_scalar scalars[] = {{"time", &time, NULL, 0, 1}};
+  const struct scalar list = {"time", SCALAR_REAL, 0, 0, 1};
+  const struct scalars scalars = {1, &list, &time};
   struct field *field = fields_add(&fields, mesh, "a", "m/s", "a field",
                                    FIELD_CELL, &remap_linear);
   field->restart = true;
   for (int32_t i = 0; i < mesh->nleaves; i++)
     field->v[i] = sin(7 * mesh->x[i][0]);
-  checkpoint_write(path, mesh, &fields, 1, scalars, "name,value\na,1\n");
+  checkpoint_write(path, "model", mesh, &fields, 1, &scalars,
+                   "name,value\na,1\n");
   fields_destroy(&fields);
   mesh_destroy(mesh);
   forest_destroy(forest);

@@ -55,8 +55,8 @@ static double plug_speed(const struct two_phase *sim, double *spread) {
 
 static bool run_to(struct two_phase *sim, double stop, double dt) {
   bool good = true;
-  while (good && sim->time < stop * (1 - 1e-12)) {
-    good = step_advance(sim, fmin(dt, stop - sim->time)) == EXIT_DONE;
+  while (good && sim->model.time < stop * (1 - 1e-12)) {
+    good = step_advance(sim, fmin(dt, stop - sim->model.time)) == EXIT_DONE;
   }
   return good;
 }

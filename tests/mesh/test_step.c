@@ -249,7 +249,7 @@ static void numbers(const struct two_phase *sim, double out[NNUMBERS]) {
     sum[5] += v * sqrt(u2) * cos(phase);
   }
   for (int k = 1; k < NSUMS; k++) out[k] = mesh_sum(mesh, sum[k]);
-  out[0] = sim->time;
+  out[0] = sim->model.time;
   out[NSUMS] = sim->energy.dissipated;
   out[NSUMS + 1] = sim->divergence_volume;
 }
@@ -300,7 +300,8 @@ static double fall(enum look look, double out[NNUMBERS]) {
   for (int k = 0; k < 40 && divergence < 1; k++) {
     if (look == FAILED_ONCE && k % 8 == 7) fail_a_step(sim, &params);
     const bool done = step_advance(sim, 1) == EXIT_DONE;
-    const double left = sim->dt * clean_divergence(sim->grid.mesh, sim->u_f->v);
+    const double left =
+        sim->model.dt * clean_divergence(sim->grid.mesh, sim->u_f->v);
     divergence = done ? fmax(divergence, left) : 1;
     if (look == LOOKED_AT) {
       fractions_synchronise(sim);
@@ -378,10 +379,10 @@ static double decay_error(int level, double theta, double *shape) {
   struct two_phase *sim = two_phase_new(&params);
   const double dt = 0.4 / (1 << level);
   bool done = true;
-  while (done && sim->time < end - 1e-12) {
-    done = step_advance(sim, fmin(dt, end - sim->time)) == EXIT_DONE;
+  while (done && sim->model.time < end - 1e-12) {
+    done = step_advance(sim, fmin(dt, end - sim->model.time)) == EXIT_DONE;
   }
-  const double exact = exp(-2 * eta * kWave * kWave * sim->time);
+  const double exact = exp(-2 * eta * kWave * kWave * sim->model.time);
   double energy[2] = {0};
   *shape = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
@@ -510,8 +511,8 @@ START_TEST(a_drop_falls_freely) {
   const double mass = integral(sim->grid.mesh, sim->c->v);
   bool done = true;
   double speed = 0, fall = 0;
-  while (done && sim->time < 0.5 - 1e-12) {
-    done = step_advance(sim, 0.5 - sim->time) == EXIT_DONE;
+  while (done && sim->model.time < 0.5 - 1e-12) {
+    done = step_advance(sim, 0.5 - sim->model.time) == EXIT_DONE;
   }
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double part = sim->c->v[i] * mesh_volume(sim->grid.mesh, i) / mass;
@@ -520,8 +521,9 @@ START_TEST(a_drop_falls_freely) {
   }
   speed = mesh_sum(sim->grid.mesh, speed);
   fall = mesh_sum(sim->grid.mesh, fall);
-  const double most = largest(sim, sim->u), time = sim->time;
-  const double exact = 0.5 * pow(time - 0.5 * sim->dt, 2); /* c lives there */
+  const double most = largest(sim, sim->u), time = sim->model.time;
+  const double exact =
+      0.5 * pow(time - 0.5 * sim->model.dt, 2); /* c lives there */
   two_phase_destroy(sim);
   ck_assert(done);
   /* buoyancy and added mass take 0.3 %, the grid 0.2 % in two dimensions and
@@ -588,7 +590,7 @@ START_TEST(an_inflow_brings_its_fraction) {
   params.boundary[1] = (struct boundary){.type = BOUNDARY_OUTFLOW};
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const bool done = advance(sim, 6, 0.01);
-  const double carried = 0.3 * (sim->time - 0.5 * sim->dt);
+  const double carried = 0.3 * (sim->model.time - 0.5 * sim->model.dt);
   const double volume = integral(sim->grid.mesh, sim->c->v);
   two_phase_destroy(sim);
   ck_assert(done);
@@ -608,7 +610,7 @@ START_TEST(a_moving_wall_is_felt_from_rest) {
       (struct boundary){.type = BOUNDARY_NO_SLIP, .velocity = {2, 0, 0}};
   struct two_phase *sim = two_phase_new(&params);
   const bool done = advance(sim, 1, 1);
-  const double dt = sim->dt;
+  const double dt = sim->model.dt;
   const int iterations = sim->viscous.iterations;
   two_phase_destroy(sim);
   ck_assert(done);
@@ -670,7 +672,8 @@ START_TEST(a_heap_less_steep_than_friction_rests) {
   struct two_phase *sim = two_phase_new(&params);
   bool done = true;
   double fastest = 0;
-  while (done && sim->time < 1) done = step_advance(sim, 0.02) == EXIT_DONE;
+  while (done && sim->model.time < 1)
+    done = step_advance(sim, 0.02) == EXIT_DONE;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int d = 0; d < DIM && sim->c->v[i] > 0.5; d++) {
       fastest = fmax(fastest, fabs(sim->u[d]->v[i]));

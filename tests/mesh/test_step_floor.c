@@ -32,14 +32,14 @@ static struct trial try_speed(double u) {
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   struct trial trial = {.floor = step_floor(sim)};
   step_advance(sim, 1);
-  trial.dt = sim->dt;
+  trial.dt = sim->model.dt;
   struct step_taken taken = {0, 0, 1};
   trial.too_short = step_is_too_short(sim, trial.floor, &taken);
-  taken.last_dt = sim->dt / 1.2;
+  taken.last_dt = sim->model.dt / 1.2;
   trial.grows = step_is_too_short(sim, trial.floor, &taken);
-  taken = (struct step_taken){0, 0, sim->dt};
+  taken = (struct step_taken){0, 0, sim->model.dt};
   trial.lands = step_is_too_short(sim, trial.floor, &taken);
-  taken = (struct step_taken){sim->time, 0, sim->dt};
+  taken = (struct step_taken){sim->model.time, 0, sim->model.dt};
   trial.stands = step_is_too_short(sim, trial.floor, &taken);
   two_phase_destroy(sim);
   return trial;

@@ -38,9 +38,9 @@ START_TEST(a_fall_from_rest_keeps_to_the_bound) {
   struct two_phase *sim = two_phase_new(&params);
   for (int k = 0; k < 6 && done; k++) {
     done = step_advance(sim, 1e6) == EXIT_DONE;
-    most = fmax(most, sim->dt * time_step_rate(sim));
+    most = fmax(most, sim->model.dt * time_step_rate(sim));
   }
-  const double time = sim->time, speed = largest(sim, sim->u);
+  const double time = sim->model.time, speed = largest(sim, sim->u);
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(most, 1.8 * params.cfl * (1 + 1e-9));
@@ -60,7 +60,7 @@ START_TEST(dt_grows_by_a_fifth_a_step) {
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   for (int k = 0; k < 4; k++) {
     done = step_advance(sim, k == 0 ? first : 1) == EXIT_DONE && done;
-    most = larger(most, fabs(sim->dt / (first * pow(1.2, k)) - 1));
+    most = larger(most, fabs(sim->model.dt / (first * pow(1.2, k)) - 1));
   }
   two_phase_destroy(sim);
   ck_assert(done);
@@ -100,7 +100,7 @@ START_TEST(c_is_in_0_1_however_long_it_has_lagged) {
   sim->planes_hold = false;
   if (_i & 2) fractions_update_planes(sim);
   if (_i & 1) {
-    sim->dt = 6 / rate;
+    sim->model.dt = 6 / rate;
     fractions_synchronise(sim);
   } else {
     fields_save(&sim->grid.fields, mesh);
@@ -147,7 +147,7 @@ START_TEST(another_gravity_is_a_new_start) {
   const double before = sim->conditions.energy;
   params.gravity[DIM - 1] *= 10;
   conditions_renew(sim);
-  const double changed = sim->energy.changed, dt = sim->dt;
+  const double changed = sim->energy.changed, dt = sim->model.dt;
   bool done = true;
   for (int k = 0; k < 5; k++)
     done = done && step_advance(sim, 0.4) == EXIT_DONE;
@@ -167,7 +167,7 @@ START_TEST(a_tilt_is_a_sudden_start) {
   params.gravity[0] = 1;
   conditions_renew(sim);
   const bool done = step_advance(sim, 0.4) == EXIT_DONE;
-  const double dt = sim->dt, h = sim->grid.mesh->h[0];
+  const double dt = sim->model.dt, h = sim->grid.mesh->h[0];
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_le(dt, 0.1 * sqrt(h));
@@ -177,12 +177,12 @@ END_TEST
 START_TEST(the_same_conditions_change_nothing) {
   struct params params;
   struct two_phase *sim = bed_at_rest(&params);
-  const double dt = sim->dt;
+  const double dt = sim->model.dt;
   const size_t bytes = (size_t)sim->grid.mesh->nleaves * sizeof(double);
   double *p = MEM_NEW(double, sim->grid.mesh->nleaves);
   memcpy(p, sim->p->v, bytes);
   conditions_renew(sim);
-  const bool same = sim->dt == dt && sim->energy.changed == 0 &&
+  const bool same = sim->model.dt == dt && sim->energy.changed == 0 &&
                     memcmp(p, sim->p->v, bytes) == 0;
   mem_free(p);
   two_phase_destroy(sim);

@@ -102,7 +102,7 @@ START_TEST(moving_walls_heat_the_grains) {
   params.velocity[0] = (struct function){height, NULL};
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
   const bool done = advance(sim, 3, 1);
-  const double heat = sim->energy.dissipated, time = sim->time;
+  const double heat = sim->energy.dissipated, time = sim->model.time;
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(heat, kEta * time, 1e-6 * kEta * time);

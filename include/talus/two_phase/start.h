@@ -5,19 +5,9 @@
 #ifndef TALUS_TWO_PHASE_START_H
 #define TALUS_TWO_PHASE_START_H
 
-#include <stdint.h>
-
+struct model_start;
 struct params;
 struct two_phase;
-
-/* How a model starts, which takes long on a fine grid. */
-struct model_start {
-  int64_t most_leaves; /* for which there is memory; 0: no bound */
-  /* Told now and then what is being done, what part of it is done, and the
-   * leaves so far; on every rank for itself. NULL: nobody is told. */
-  void (*tell)(void *context, const char *what, double part, int64_t leaves);
-  void *context;
-};
 
 /* Make the initial state of a case. Collective. The caller owns it. */
 struct two_phase *two_phase_new(const struct params *params);

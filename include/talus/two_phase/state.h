@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "talus/grid.h"
+#include "talus/model.h"
 #include "talus/params.h"
 #include "talus/solve.h"
 #include "talus/two_phase/conditions.h"
@@ -33,7 +34,7 @@ struct energy {
   double gas_dissipated; /* as `dissipated` */
 };
 
-/* Stages of a step (step.c), for --timing. */
+/* Stages of a step (step.c). */
 enum step_stage {
   STAGE_FRACTION,   /* cleaning, VOF and the momentum that rides with it */
   STAGE_DENSITY,    /* density and gravity */
@@ -47,6 +48,7 @@ enum step_stage {
 };
 
 struct two_phase {
+  struct model model;
   const struct params *params; /* borrowed */
   struct grid grid;            /* owned, as all below */
 
@@ -88,8 +90,6 @@ struct two_phase {
   int64_t most_leaves; /* there is memory for; 0: no bound */
   double outgrown;     /* leaves wanted when there was none, else 0 */
 
-  double time, dt;
-  int64_t step;
   double travel;    /* cells the surface may have moved since adaptation */
   double slow_time; /* that the grains have been slow (rest.h), s */
   struct solve_stats pressure, predictor, viscous; /* of the last step, by
@@ -101,9 +101,6 @@ struct two_phase {
   struct conditions conditions; /* of the checkpoint, on a restart */
   double scale;                 /* largest speed, of the viscous tolerance */
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
-
-  double seconds[NSTAGES]; /* wall-clock time on this rank since the start */
-  double mark;             /* when the stage under way began */
 };
 
 /* Make the fields of a state on a forest, which it takes over, all zero; a

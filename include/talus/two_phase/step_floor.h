@@ -18,18 +18,12 @@
 
 #include <stdbool.h>
 
+struct step_taken;
 struct two_phase;
 
 /* The right hand side of (1), or what (2) asks for if that is more; s. u_0 is
  * taken from the functions of the case at the leaves. Collective. */
 double step_floor(const struct two_phase *sim);
-
-/* A step as the run saw it. */
-struct step_taken {
-  double time;    /* when it began */
-  double last_dt; /* of the step before it; 0: none */
-  double dt_max;  /* the most it might take */
-};
 
 /* Return whether the step just made, which began as `taken` says, was too
  * short; then say why on stderr and in the log, with the place and the bound on
