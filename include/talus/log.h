@@ -3,15 +3,12 @@
  * The log of a run: a text file written by rank 0, a line at a time.
  *
  * Nothing here reaches the terminal. Until log_open, and on ranks other than 0,
- * log_info and log_debug do nothing, so that they may be called anywhere.
+ * log_info does nothing, so that it may be called anywhere.
  */
 #ifndef TALUS_LOG_H
 #define TALUS_LOG_H
 
 #include <stdbool.h>
-
-/* What is written; each level includes those above it. */
-enum { LOG_LEVEL_NONE = 0, LOG_LEVEL_INFO = 1, LOG_LEVEL_DEBUG = 2 };
 
 /*
  * Opens the log on rank 0 and closes the one open before. An existing file is
@@ -24,13 +21,7 @@ bool log_open(const char *path);
 /* Closes the log; allowed when none is open. Not collective. */
 void log_close(void);
 
-/* Chooses what is written from now on, LOG_LEVEL_INFO at the start. */
-void log_level_set(int level);
-
 /* Writes one line (printf, without the newline) and flushes it. */
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
-
-/* The same for what only a developer wants to read. */
-void log_debug(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 #endif

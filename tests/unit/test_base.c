@@ -326,16 +326,6 @@ START_TEST(log_flushes_each_line) {
 }
 END_TEST
 
-START_TEST(log_level_chooses_what_is_written) {
-  log_debug("not yet");
-  log_level_set(LOG_LEVEL_DEBUG);
-  log_debug("now");
-  log_level_set(LOG_LEVEL_NONE);
-  log_info("no more");
-  assert_log_is("now\n");
-}
-END_TEST
-
 START_TEST(log_continues_an_existing_file) {
   log_info("first");
   log_close();
@@ -390,7 +380,6 @@ static TCase *log_case(void) {
   TCase *tcase = tcase_create("log");
   tcase_add_checked_fixture(tcase, make_log, remove_log);
   tcase_add_test(tcase, log_flushes_each_line);
-  tcase_add_test(tcase, log_level_chooses_what_is_written);
   tcase_add_test(tcase, log_continues_an_existing_file);
   tcase_add_test(tcase, log_keeps_last_words);
   tcase_add_test(tcase, log_says_when_it_cannot_be_opened);
