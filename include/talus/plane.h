@@ -71,12 +71,6 @@ double plane_box_volume(const double n[DIM], double alpha, const double lo[DIM],
                         const double hi[DIM]);
 
 /*
- * Area (2D: length) of the interface inside the cell, |n|_2 dV/dalpha.
- * 0 when the plane misses the interior of the cell, or n = 0.
- */
-double plane_area(const double n[DIM], double alpha);
-
-/*
  * Centroid x of the interface inside the cell: midpoint of the segment (2D),
  * centroid of the polygon (3D). A plane that misses the cell gives its nearest
  * corner, edge or face; n = 0 gives the centre of the cell.

@@ -39,17 +39,6 @@ double plane_box_volume(const double n[DIM], double alpha, const double lo[DIM],
   return plane_volume(scaled, alpha);
 }
 
-double plane_area(const double n[DIM], double alpha) {
-  double norm = norm1(n);
-  if (norm <= 0.) return 0.;
-  double a = 0.5 - fabs(alpha) / norm;
-  if (a <= 0.) return 0.;
-  double m[DIM], square = 0.;
-  sorted_components(n, norm, m);
-  for (int d = 0; d < DIM; d++) square += m[d] * m[d];
-  return sqrt(square) * small_slope(m, a);
-}
-
 void plane_centroid(const double n[DIM], double alpha, double x[DIM]) {
   for (int d = 0; d < DIM; d++) x[d] = 0.;
   double norm = norm1(n);
