@@ -50,16 +50,4 @@ typedef double (*shape_level_set)(void *context, const double x[3]);
 double shape_fraction(shape_level_set f, void *context,
                       const double centre[DIM], double h, int depth);
 
-/*
- * Level set of the box lo[d] < x[d] < hi[d], d < DIM, in the unit of x: the
- * distance to the nearest face inside, minus the largest overshoot outside.
- * Bounds may be infinite, but not all of them.
- */
-double shape_box(const double lo[DIM], const double hi[DIM],
-                 const double x[DIM]);
-
-/* Level set of the disc or ball: radius minus the distance to its centre. */
-double shape_sphere(const double centre[DIM], double radius,
-                    const double x[DIM]);
-
 #endif

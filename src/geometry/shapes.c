@@ -140,19 +140,3 @@ double shape_fraction(shape_level_set f, void *context,
   p.centre = evaluate(&shape, centre);
   return piece_fraction(&shape, &p, depth);
 }
-
-double shape_box(const double lo[DIM], const double hi[DIM],
-                 const double x[DIM]) {
-  double nearest = INFINITY;
-  for (int d = 0; d < DIM; d++)
-    nearest = min2(nearest, min2(x[d] - lo[d], hi[d] - x[d]));
-  return nearest;
-}
-
-double shape_sphere(const double centre[DIM], double radius,
-                    const double x[DIM]) {
-  double square = 0.;
-  for (int d = 0; d < DIM; d++)
-    square += (x[d] - centre[d]) * (x[d] - centre[d]);
-  return radius - sqrt(square);
-}

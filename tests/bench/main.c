@@ -72,7 +72,8 @@ static struct system system_new(int level, double inside, double outside) {
          f++) {
       double x[3];
       face_centre(s.mesh, d, f, x);
-      s.coefficient[f] = shape_sphere(kMiddle, 0.25, x) > 0 ? inside : outside;
+      s.coefficient[f] =
+          level_set_ball(kMiddle, 0.25, x) > 0 ? inside : outside;
     }
     for (int32_t i = 0; i < s.mesh->nleaves; i++) {
       s.rho[i] = 1;

@@ -12,7 +12,7 @@ static const double kCentre[] = {0.5, 0.75, 0}, kRadius = 0.15;
 static double slotted_disc(void *context, const double x[3]) {
   static const double lo[] = {0.475, 0.5, 0}, hi[] = {0.525, 0.85, 0};
   (void)context;
-  return fmin(shape_sphere(kCentre, kRadius, x), -shape_box(lo, hi, x));
+  return fmin(level_set_ball(kCentre, kRadius, x), -level_set_box(lo, hi, x));
 }
 
 /* u = 2 pi (1/2 - y), v = 2 pi (x - 1/2), constant along faces. */

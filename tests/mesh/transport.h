@@ -3,6 +3,7 @@
 #ifndef TALUS_TESTS_TRANSPORT_H
 #define TALUS_TESTS_TRANSPORT_H
 
+#include "../unit/level_sets.h"
 #include "bench.h"
 #include "talus/vof.h"
 
@@ -57,7 +58,7 @@ struct body {
 
 static inline double ball(void *context, const double x[3]) {
   const struct body *body = (const struct body *)context;
-  return shape_sphere(body->centre, body->size, x);
+  return level_set_ball(body->centre, body->size, x);
 }
 
 static inline double cube(void *context, const double x[3]) {
@@ -67,7 +68,7 @@ static inline double cube(void *context, const double x[3]) {
     lo[d] = body->centre[d] - body->size;
     hi[d] = body->centre[d] + body->size;
   }
-  return shape_box(lo, hi, x);
+  return level_set_box(lo, hi, x);
 }
 
 #endif
