@@ -75,7 +75,4 @@ struct hierarchy;
 struct hierarchy *hierarchy_new(const struct mesh *mesh);
 void hierarchy_destroy(struct hierarchy *hierarchy);
 
-/* Memory held on this rank, in bytes; not collective. */
-int64_t hierarchy_bytes(const struct hierarchy *hierarchy);
-
 #endif

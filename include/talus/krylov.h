@@ -80,7 +80,6 @@ struct krylov_space; /* directions, kept between solves */
 
 struct krylov_space *krylov_space_new(void);
 void krylov_space_destroy(struct krylov_space *space);
-int64_t krylov_space_bytes(const struct krylov_space *space);
 
 /* Reduce r (in: residual of x, out: of the result) until max |r/rho| <=
  * tolerance, adding to x; r [nparts * n], x[nparts] [n]. KRYLOV_PATIENCE

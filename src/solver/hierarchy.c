@@ -352,19 +352,3 @@ void hierarchy_destroy(struct hierarchy *h) {
   for (int c = 0; c < DIM; c++) mem_free(h->inverse[c]);
   mem_free(h);
 }
-
-int64_t hierarchy_bytes(const struct hierarchy *h) {
-  const struct level *last = &h->level[h->nlevels - 1];
-  const int64_t nfamilies = last->family_begin + last->nfamilies;
-  const int64_t number = sizeof(double), half = sizeof(float);
-  const int64_t index = sizeof(int32_t);
-
-  return h->nactive * ((NFACE + NCORNER) * index + 1) +
-         h->nslots * (NFACE * half + DIM * number) + arena_length(h) * number +
-         nfamilies * (NFACE * half + index) +
-         h->njumps * (int64_t)sizeof(struct jump) +
-         h->nmirrors * (int64_t)sizeof(struct mirror) +
-         h->nsides * (int64_t)sizeof(struct side) +
-         h->nleaves * (index + DIM * (number + half)) +
-         krylov_space_bytes(h->krylov);
-}

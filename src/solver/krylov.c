@@ -54,14 +54,6 @@ void krylov_space_destroy(struct krylov_space *space) {
   mem_free(space);
 }
 
-int64_t krylov_space_bytes(const struct krylov_space *space) {
-  int64_t n = 0;
-  for (int k = 0; k < KRYLOV_DIRECTIONS; k++) {
-    n += (space->z[k][0] ? 2 : 0) + (space->z[k][1] ? 2 : 0);
-  }
-  return n * space->size * (int64_t)sizeof(float);
-}
-
 /* For vectors of `size` numbers. */
 static void space_open(struct krylov_space *space, int64_t size) {
   space->used = 0;
