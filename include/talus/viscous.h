@@ -56,12 +56,4 @@ void viscous_force(const struct mesh *mesh, const double *eta_f,
                    const struct skin *skin, double *const u[DIM],
                    double *const force[DIM]);
 
-/* dissipation [nleaves] = 2 eta D:D, W/m^3, as the mean over each cell's
- * faces of sum_e tau_de (u_e1 - u_e0) / h times the number of axes: its sum
- * over the domain is the work of the discrete force on a resting boundary,
- * -sum_i V_i u_i . force_i (on one level, to round-off). Collective. */
-void viscous_dissipation(const struct mesh *mesh, const double *eta_f,
-                         const struct skin *skin, double *const u[DIM],
-                         double *dissipation);
-
 #endif

@@ -95,30 +95,6 @@ void viscous_force(const struct mesh *mesh, const double *eta_f,
   }
 }
 
-void viscous_dissipation(const struct mesh *mesh, const double *eta_f,
-                         const struct skin *skin, double *const u[DIM],
-                         double *dissipation) {
-  double *tau[DIM];
-  for (int e = 0; e < DIM; e++) tau[e] = MEM_NEW(double, mesh->nfaces_all);
-  stress(mesh, eta_f, skin, u, tau);
-  double *power = tau[0];
-  for (int32_t f = 0; f < mesh->nfaces; f++) {
-    const int32_t *node = mesh->face_node[f];
-    double sum = 0;
-    for (int e = 0; e < DIM; e++) {
-      sum += tau[e][f] * (u[e][node[1]] - u[e][node[0]]);
-    }
-    power[f] = sum / mesh->face_h[f];
-  }
-  mesh_fill_faces(mesh, 1, &power);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double sum = 0;
-    for (int f = 0; f < NFACE; f++) sum += power[mesh->cell_face[i][f]];
-    dissipation[i] = 0.5 * sum;
-  }
-  for (int e = 0; e < DIM; e++) mem_free(tau[e]);
-}
-
 /* q = rho u - theta dt div(2 eta D(u)), u filled; q may be u. */
 static void operate(const struct context *k, double *const u[DIM],
                     double *const q[DIM]) {
