@@ -76,8 +76,6 @@ int key_rank(const struct builder *b, uint64_t key);
 void build_leaves(struct builder *b);
 /* mesh_stencil.c: stencils and helper nodes, with final indices. */
 void build_stencils(struct builder *b);
-/* Average node over (key, level), made on demand. */
-int32_t average_get(struct builder *b, uint64_t key, int level);
 /* mesh_face.c: faces and their links. */
 void build_faces(struct builder *b);
 

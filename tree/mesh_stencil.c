@@ -19,6 +19,8 @@ static bool is_local(const struct builder *b, uint64_t key, int level) {
          key + curve_span(level) > b->first_keys[rank];
 }
 
+static int32_t average_get(struct builder *b, uint64_t key, int level);
+
 /* Child of an average that this rank can add up: a leaf of its own, or an
  * average with leaves of its own below; else -1. */
 static int32_t average_child_get(struct builder *b, uint64_t key, int level) {
@@ -31,7 +33,8 @@ static int32_t average_child_get(struct builder *b, uint64_t key, int level) {
   return average_get(b, key, level);
 }
 
-int32_t average_get(struct builder *b, uint64_t key, int level) {
+/* Return the average node over (key, level), made on demand. */
+static int32_t average_get(struct builder *b, uint64_t key, int level) {
   int32_t k = table_find(&b->table, key, level + 1);
   if (k >= 0) return node_name(KIND_AVERAGE, k);
   k = list_grow((void **)&b->average, &b->naverages, &b->average_capacity,

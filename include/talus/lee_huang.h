@@ -85,9 +85,8 @@ struct lee_huang_kinetic {
 };
 struct lee_huang_kinetic lee_huang_kinetic(const double *param, double nu);
 
-/* f_1 = p_ES/K at a solid fraction, and I of the dilatancy law (23). */
+/* f_1 = p_ES/K at a solid fraction. */
 double lee_huang_packing(const double *param, double nu);
-double lee_huang_dilatancy(const double *param, double nu);
 
 /* Ends of the branches. */
 struct lee_huang_marks {

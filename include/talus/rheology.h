@@ -144,8 +144,7 @@ void rheology_begin(void);
 /* The closure of this name, NULL if there is none. */
 const struct rheology_model *rheology_find(const char *name);
 
-/* How many closures there are, and closure i; NULL if i is out of range. */
-int rheology_count(void);
+/* Closure i of the list, NULL if i is out of range. */
 const struct rheology_model *rheology_get(int i);
 
 /*

@@ -5,6 +5,16 @@
 #include <stdio.h>
 #include <string.h>
 
+enum run_end {
+  RUN_END_UNKNOWN,  /* no run, or one of an older version */
+  RUN_END_OPEN,     /* it has begun: it runs, or was killed */
+  RUN_END_FINISHED, /* at output.stop, or at rest */
+  RUN_END_STOPPED,  /* before, by a signal or a bound on steps or seconds */
+  RUN_END_FAILED    /* by an error */
+};
+
+enum { LENGTH = 1024 };
+
 static bool begins(const char *line, const char *word) {
   return strncmp(line, word, strlen(word)) == 0;
 }
@@ -19,8 +29,10 @@ static enum run_end next_state(enum run_end state, const char *line) {
   return begins(line, "end: ") ? RUN_END_FINISHED : state;
 }
 
-enum run_end run_end_read(const char *directory, char text[RUN_END_LENGTH]) {
-  char line[RUN_END_LENGTH];
+/* Return how the last run ended, and in `text` the line that says so, "" if
+ * there is none. */
+static enum run_end read_end(const char *directory, char text[LENGTH]) {
+  char line[LENGTH];
   enum run_end state = RUN_END_UNKNOWN;
   text[0] = '\0';
   snprintf(line, sizeof line, "%s/run.log", directory);
@@ -31,7 +43,7 @@ enum run_end run_end_read(const char *directory, char text[RUN_END_LENGTH]) {
     enum run_end next = next_state(state, line);
     if (next == RUN_END_OPEN) text[0] = '\0';
     if (next != state && next != RUN_END_OPEN)
-      snprintf(text, RUN_END_LENGTH, "%s", strchr(line, ' ') + 1);
+      snprintf(text, LENGTH, "%s", strchr(line, ' ') + 1);
     state = next;
   }
   fclose(f);
@@ -45,7 +57,7 @@ void run_end_print(const char *directory) {
       [RUN_END_FINISHED] = "finished",
       [RUN_END_STOPPED] = "stopped before its end, --restart goes on",
       [RUN_END_FAILED] = "failed"};
-  char text[RUN_END_LENGTH];
-  enum run_end state = run_end_read(directory, text);
+  char text[LENGTH];
+  enum run_end state = read_end(directory, text);
   printf("state: %s%s%s\n", words[state], *text ? ": " : "", text);
 }

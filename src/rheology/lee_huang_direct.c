@@ -37,7 +37,8 @@ double lee_huang_packing(const double *param, double nu) {
   return 2 * nu * pow(excess, param[LEE_HUANG_CHI]) * sine * sine;
 }
 
-double lee_huang_dilatancy(const double *param, double nu) {
+/* I of the dilatancy law (23) at a solid fraction. */
+static double dilatancy(const double *param, double nu) {
   const double excess = fmax(1 / nu - 1 / param[LEE_HUANG_NU_0], 0);
   return pow(excess / param[LEE_HUANG_A], 1 / param[LEE_HUANG_DELTA]);
 }
@@ -51,7 +52,7 @@ struct balance {
 /* Contact alone: f_2 >= f_3. */
 static double dense_residual(double nu, void *context) {
   const struct balance *b = (const struct balance *)context;
-  const double I = lee_huang_dilatancy(b->param, nu);
+  const double I = dilatancy(b->param, nu);
   return b->K_over_p * lee_huang_packing(b->param, nu) +
          b->I_2 / fmax(I * I, 1e-200) - 1;
 }
@@ -65,7 +66,7 @@ static double inertial_residual(double nu, void *context) {
 /* f_3/f_2 - 1, < 0 where there is contact. */
 static double transition_residual(double nu, void *context) {
   const struct balance *b = (const struct balance *)context;
-  const double I = lee_huang_dilatancy(b->param, nu);
+  const double I = dilatancy(b->param, nu);
   return lee_huang_kinetic(b->param, nu).pressure * I * I - 1;
 }
 
@@ -118,7 +119,7 @@ const char *lee_huang_find(const double *param, struct lee_huang_marks *marks) {
     return "nu_min must be above the solid fraction at which contact ends; "
            "raise nu_min or a";
   marks->nu_last = search_last(param, marks->nu_tran);
-  marks->I_m = lee_huang_dilatancy(param, nu_min);
+  marks->I_m = dilatancy(param, nu_min);
   marks->I_tran = 1 / sqrt(lee_huang_kinetic(param, marks->nu_tran).pressure);
   marks->I_max = 1 / sqrt(lee_huang_kinetic(param, marks->nu_last).pressure);
   return NULL;

@@ -27,8 +27,6 @@ static const char *const REGULARISATIONS[] = {
     [RHEOLOGY_BERCOVIER_ENGELMAN] = "bercovier_engelman",
 };
 
-int rheology_count(void) { return NMODELS; }
-
 const struct rheology_model *rheology_get(int i) {
   return i >= 0 && i < NMODELS ? MODELS[i] : NULL;
 }
