@@ -45,8 +45,8 @@ LIST = "src/models.c"
 # Public headers without a .c of their stem: stem -> owner.
 HEADER_ONLY = {"minmax": "base", "params": "params", "solve": "solver",
                "table": "base", "morton": "tree", "columns": "base",
-               "scalars": "base", "stopwatch": "base", "key": "params",
-               "model": "models"}
+               "scalars": "base", "stopwatch": "base", "poison": "base",
+               "key": "params", "model": "models"}
 
 # Foreign headers: pattern -> folders or files that may include them.
 FOREIGN = {
