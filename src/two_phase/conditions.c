@@ -28,13 +28,15 @@ static void measure_energy(struct two_phase *sim,
 static double measure_force(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double *g[DIM], sum = 0;
-  field_arrays(sim->cell, g);
+  step_density(sim);
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, g);
   step_acceleration(sim, g);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double g2 = 0;
     for (int d = 0; d < DIM; d++) g2 += g[d][i] * g[d][i];
     sum += sqrt(g2) * mesh_volume(mesh, i);
   }
+  scratch_give(&sim->scratch, __func__);
   return mesh_sum(mesh, sum);
 }
 
@@ -59,7 +61,9 @@ static double boundary_velocity(struct two_phase *sim, double *u_f) {
 void conditions_measure(struct two_phase *sim, struct conditions *conditions) {
   measure_energy(sim, conditions);
   conditions->force = measure_force(sim);
-  conditions->inflow = boundary_velocity(sim, sim->face[1]->v);
+  double *u_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  conditions->inflow = boundary_velocity(sim, u_f);
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* Bring c, and the momentum that rides with it, to `time`. */
@@ -71,13 +75,14 @@ static void end_lag(struct two_phase *sim) {
 
 static void start_anew(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *given = sim->face[1]->v;
   end_lag(sim);
+  double *given = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   boundary_velocity(sim, given);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
     if (patch >= 0 && sim->grid.closed[patch]) sim->u_f->v[f] = given[f];
   }
+  scratch_give(&sim->scratch, __func__);
   field_fill_faces(mesh, sim->u_f);
   step_start(sim);
 }

@@ -11,9 +11,11 @@
 #include "talus/two_phase/time_step.h"
 #include "talus/vof.h"
 
-/* The scratch cell field that keeps c during a sweep, or while it is
- * synchronised. */
-enum { C_OLD = 2 * DIM - 1 };
+/* What the sweeps of a fraction work with: planes of its cut leaves, cc
+ * (vof.h), and room for its flux. */
+struct sweep {
+  double *normal[DIM], *plane, *cc, *flux;
+};
 
 void fractions_update_planes(struct two_phase *sim) {
   double *normal[DIM];
@@ -23,67 +25,89 @@ void fractions_update_planes(struct two_phase *sim) {
   sim->planes_hold = true;
 }
 
-/* Take cc dt div(u_f) out of a fraction again, to which the terms with cc
+/* Take cc dt div(u_f) out of a fraction c again, to which the terms with cc
  * (vof.h) add up over the axes where u_f has a source, 1/s; NULL: none. */
 static void remove_dilation(const struct two_phase *sim, double dt,
-                            const double *source, double *c) {
+                            const double *source, const double *cc, double *c) {
   if (!source) return;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    c[i] -= sim->frozen->v[i] * dt * source[i];
+    c[i] -= cc[i] * dt * source[i];
   }
 }
 
-/* The tracer (or c) is filled, normal and plane are its own. */
+/* Sweep a tracer (or c), which is filled, along d. */
 static void sweep_tracer(struct two_phase *sim, int d, double dt,
-                         const double *u_f, double *const normal[DIM],
-                         const double *plane, double *tracer) {
+                         const double *u_f, const struct sweep *sweep,
+                         double *tracer) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *flux = sim->face[0]->v;
-  vof_flux(mesh, d, dt, u_f, sim->grid.open, tracer, normal, plane, flux);
-  vof_update(mesh, d, dt, u_f, flux, sim->frozen->v, tracer);
+  vof_flux(mesh, d, dt, u_f, sim->grid.open, tracer, sweep->normal,
+           sweep->plane, sweep->flux);
+  vof_update(mesh, d, dt, u_f, sweep->flux, sweep->cc, tracer);
+}
+
+/* Begin the sweeps of a tracer with scratch, which end_tracer gives back. */
+static struct sweep begin_tracer(struct two_phase *sim) {
+  struct sweep sweep;
+  double *cell[DIM + 2];
+  scratch_take(&sim->scratch, FIELD_CELL, "tracer", DIM + 2, cell);
+  for (int e = 0; e < DIM; e++) sweep.normal[e] = cell[e];
+  sweep.plane = cell[DIM], sweep.cc = cell[DIM + 1];
+  sweep.flux = scratch_take_one(&sim->scratch, FIELD_FACE, "tracer");
+  return sweep;
+}
+
+static void end_tracer(struct two_phase *sim) {
+  scratch_give(&sim->scratch, "tracer");
 }
 
 /* The planes of c are left as they are, for it may be set back. */
 static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
                            const double *source, struct field *tracer) {
+  const struct mesh *mesh = sim->grid.mesh;
   bool held = tracer == sim->c && sim->planes_hold;
-  vof_freeze(sim->grid.mesh, tracer->v, sim->frozen->v);
+  struct sweep sweep = begin_tracer(sim), known = sweep;
+  field_arrays(sim->normal, known.normal), known.plane = sim->plane->v;
+  vof_freeze(mesh, tracer->v, sweep.cc);
   for (int s = 0; s < DIM; s++, held = false) {
     const int d = (int)((sim->model.step + s) % DIM);
-    double *normal[DIM], *plane = (held ? sim->plane : sim->cell[DIM])->v;
-    field_arrays(held ? sim->normal : sim->cell, normal);
-    field_fill(sim->grid.mesh, tracer);
-    if (!held) vof_reconstruct(sim->grid.mesh, tracer->v, normal, plane);
-    sweep_tracer(sim, d, dt, u_f, normal, plane, tracer->v);
+    field_fill(mesh, tracer);
+    if (!held) vof_reconstruct(mesh, tracer->v, sweep.normal, sweep.plane);
+    sweep_tracer(sim, d, dt, u_f, held ? &known : &sweep, tracer->v);
   }
-  remove_dilation(sim, dt, source, tracer->v);
+  remove_dilation(sim, dt, source, sweep.cc, tracer->v);
+  end_tracer(sim);
 }
 
-/* u and c are filled. */
+/* Sweep c with its cc, and u near the interface. u and c are filled. */
 static void sweep_grains(struct two_phase *sim, int d, double dt,
-                         const double *u_f) {
+                         const double *u_f, double *cc) {
   const struct mesh *mesh = sim->grid.mesh;
-  double density[2], *u[DIM], *start[DIM], *normal[DIM];
-  double *c_old = sim->cell[C_OLD]->v;
+  double density[2], *u[DIM], *start[DIM], *cell[DIM + 1], *face[DIM + 1];
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM + 1, cell);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, DIM + 1, face);
+  struct sweep sweep = {.plane = sim->plane->v, .cc = cc, .flux = face[DIM]};
+  double *c_old = cell[DIM];
   struct momentum_flux flux = {.mass = sim->u_half->v};
   two_phase_densities(sim, density);
   field_arrays(sim->u, u), field_arrays(sim->u_old, start);
-  field_arrays(sim->normal, normal);
+  field_arrays(sim->normal, sweep.normal);
   for (int e = 0; e < DIM; e++) {
-    flux.carried[e] = sim->face[1 + e]->v;
-    flux.slope[e] = sim->cell[e]->v;
+    flux.carried[e] = face[e];
+    flux.slope[e] = cell[e];
   }
   memcpy(c_old, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
   fractions_update_planes(sim);
-  sweep_tracer(sim, d, dt, u_f, normal, sim->plane->v, sim->c->v);
+  sweep_tracer(sim, d, dt, u_f, &sweep, sim->c->v);
   sim->planes_hold = false;
-  momentum_flux(mesh, d, dt, density, u_f, c_old, sim->face[0]->v, sim->band->v,
-                u, &flux);
-  momentum_update(mesh, d, dt, density, u_f, c_old, sim->frozen->v,
-                  sim->band->v, start, &flux, u);
+  momentum_flux(mesh, d, dt, density, u_f, c_old, sweep.flux, sim->band->v, u,
+                &flux);
+  momentum_update(mesh, d, dt, density, u_f, c_old, cc, sim->band->v, start,
+                  &flux, u);
+  scratch_give(&sim->scratch, __func__);
 }
 
-static void log_divergence(struct two_phase *sim, double dt) {
+/* Add what div u_f has made of c, whose cc this is, over dt. */
+static void add_divergence(struct two_phase *sim, double dt, const double *cc) {
   const struct mesh *mesh = sim->grid.mesh;
   double sum = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -91,31 +115,40 @@ static void log_divergence(struct two_phase *sim, double dt) {
     for (int f = 0; f < NFACE; f++) {
       net += (f & 1 ? 1 : -1) * mesh_side(mesh, sim->u_f->v, i, f);
     }
-    sum += sim->frozen->v[i] * net * dt * mesh_volume(mesh, i) /
-           mesh_width(mesh, i);
+    sum += cc[i] * net * dt * mesh_volume(mesh, i) / mesh_width(mesh, i);
   }
   sim->divergence_volume += mesh_sum(mesh, sum);
 }
 
-void fractions_carry(struct two_phase *sim, double dt, const double *u_f,
-                     const double *source) {
+/* Carry as fractions_carry, and leave cc of c, [ncells], with the caller. */
+static void carry(struct two_phase *sim, double dt, const double *u_f,
+                  const double *source, double *cc) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int k = 0; k < sim->params->ntracers; k++) {
     advance_tracer(sim, dt, u_f, source, sim->tracer[k]);
   }
   if (sim->params->single_phase) return;
-  vof_freeze(mesh, sim->c->v, sim->frozen->v);
+  vof_freeze(mesh, sim->c->v, cc);
   for (int s = 0; s < DIM; s++) {
     if (s > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
-    sweep_grains(sim, (int)((sim->model.step + s) % DIM), dt, u_f);
+    sweep_grains(sim, (int)((sim->model.step + s) % DIM), dt, u_f, cc);
   }
-  remove_dilation(sim, dt, source, sim->c->v);
+  remove_dilation(sim, dt, source, cc, sim->c->v);
+}
+
+void fractions_carry(struct two_phase *sim, double dt, const double *u_f,
+                     const double *source) {
+  double *cc = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  carry(sim, dt, u_f, source, cc);
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* Sweeps with the velocity of the step. u, c and band are filled. */
 static void sweep_fractions(struct two_phase *sim, double dt) {
-  fractions_carry(sim, dt, sim->u_f->v, NULL);
-  if (!sim->params->single_phase) log_divergence(sim, dt);
+  double *cc = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  carry(sim, dt, sim->u_f->v, NULL, cc);
+  if (!sim->params->single_phase) add_divergence(sim, dt, cc);
+  scratch_give(&sim->scratch, __func__);
 }
 
 static void mark_band(struct two_phase *sim, int rings) {
@@ -179,17 +212,22 @@ void fractions_advance(struct two_phase *sim, double dt, double rate) {
   sweep_in_parts(sim, dt, parts_of(rate * dt, VOF_CFL));
 }
 
+static void set_back(struct two_phase *sim) {
+  memcpy(sim->c->v, sim->c_before,
+         (size_t)sim->grid.mesh->nleaves * sizeof(double));
+}
+
 void fractions_synchronise(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *before = sim->cell[C_OLD]->v;
-  memcpy(before, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  sim->c_before = scratch_take_one(&sim->scratch, FIELD_CELL, "c_before");
+  memcpy(sim->c_before, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
   if (sim->params->single_phase || sim->model.dt == 0) return;
   advance_tracer(sim, 0.5 * sim->model.dt, sim->u_f->v, NULL, sim->c);
   if (mesh_max(mesh, vof_excess(mesh, sim->c->v)) <= VOF_EMPTY) return;
   const bool held = sim->planes_hold;
   const double half = 0.5 * sim->model.dt;
   const int parts = parts_of(half * time_step_rate(sim), VOF_CFL);
-  fractions_desynchronise(sim);
+  set_back(sim);
   for (int k = 0; k < parts; k++, sim->planes_hold = false) {
     advance_tracer(sim, half / parts, sim->u_f->v, NULL, sim->c);
   }
@@ -197,8 +235,9 @@ void fractions_synchronise(struct two_phase *sim) {
 }
 
 void fractions_desynchronise(struct two_phase *sim) {
-  memcpy(sim->c->v, sim->cell[C_OLD]->v,
-         (size_t)sim->grid.mesh->nleaves * sizeof(double));
+  set_back(sim);
+  scratch_give(&sim->scratch, "c_before");
+  sim->c_before = NULL;
 }
 
 void fractions_read_tracer(struct two_phase *sim, int k, double *value) {

@@ -93,12 +93,13 @@ static void choose_free(int n, double (*sum)[SET_SIZE], bool *is_free) {
 static void fill_pockets(struct two_phase *sim, double *solid) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct bc *bc[] = {sim->c->bc};
-  double *pure = sim->source->v;
+  double *pure = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   int32_t *set = MEM_NEW(int32_t, (size_t)mesh->nleaves);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     pure[i] = sim->c->v[i] < PERCOLATION_PURE;
   }
   const int n = droplets_number(mesh, pure, 0.5, set);
+  scratch_give(&sim->scratch, __func__);
   double(*sum)[SET_SIZE] = mem_alloc((size_t)n + 1, sizeof *sum);
   bool *is_free = MEM_NEW(bool, (size_t)n + 1);
   measure_sets(sim, set, n, sum);
@@ -234,11 +235,11 @@ static void balance_sinks(const struct mesh *mesh, const double *c,
   }
 }
 
-/* w = grad psi with div w about q; psi [ncells] scratch. */
-static void solve_velocity(struct two_phase *sim, double most, double *psi,
-                           double *w) {
+/* Set w to grad psi with div w about q. */
+static void solve_velocity(struct two_phase *sim, double most, double *w) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *alpha = sim->alpha_f->v;
+  double *psi = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  double *alpha = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   struct bc bc[MESH_MAX_PATCHES];
   memcpy(bc, sim->p->bc, sizeof bc);
   for (int k = 0; k < MESH_MAX_PATCHES; k++) bc[k].value = 0;
@@ -251,6 +252,7 @@ static void solve_velocity(struct two_phase *sim, double most, double *psi,
   poisson_solve(mesh, sim->grid.hierarchy, alpha, NULL, sim->source->v, bc,
                 TOLERANCE * most, sim->params->max_iterations, psi);
   poisson_flux(mesh, alpha, psi, w);
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* Bind what a leaf gives by the gas that w leaves in it. */
@@ -300,24 +302,28 @@ static double potential(const struct two_phase *sim) {
   return sim->params->grains.density * sum;
 }
 
-void percolation_advance(struct two_phase *sim, double dt) {
+/* Find the source of gas and the velocity that carries it; returns whether
+ * there is enough. */
+static bool find_carrier(struct two_phase *sim, double dt, double *solid,
+                         double *reach) {
   const struct mesh *mesh = sim->grid.mesh;
   const bool search =
       sim->model.step % PERCOLATION_EVERY == 0 || sim->percolation.pockets > 0;
   const bool thorough = sim->model.step % PERCOLATION_EVERY == 0;
-  if (!sim->source || dt == 0) return;
-  double *q = sim->source->v, *w = sim->carrier->v, *solid = sim->c->v;
-  double *reach = sim->plane->v; /* scratch, as the planes are made anew */
+  double *q = sim->source->v, *w = sim->carrier->v;
   field_fill(mesh, sim->c);
-  if (search) fill_pockets(sim, solid = sim->frozen->v);
-  sim->planes_hold = false;
-  if (!find_reach(sim, solid, reach)) return;
+  if (search) {
+    fill_pockets(sim, solid);
+  } else {
+    solid = sim->c->v;
+  }
+  if (!find_reach(sim, solid, reach)) return false;
   const struct free_gas gas = find_free_gas(sim, solid);
-  if (gas.volume == 0 && !sim->grid.pressure_set) return;
+  if (gas.volume == 0 && !sim->grid.pressure_set) return false;
   const double most = set_sinks(sim, dt, solid, reach, gas.pressure, q);
-  if (most < (thorough ? TRACE : LEAST)) return;
+  if (most < (thorough ? TRACE : LEAST)) return false;
   balance_sinks(mesh, sim->c->v, solid, q);
-  solve_velocity(sim, most / dt, reach, w);
+  solve_velocity(sim, most / dt, w);
   clean_to_source(sim->grid.clean, mesh, sim->grid.open, q, w);
   enum { ROUNDS = 3 };
   for (int k = 0; k < ROUNDS; k++) {
@@ -325,10 +331,20 @@ void percolation_advance(struct two_phase *sim, double dt) {
     balance_sinks(mesh, sim->c->v, solid, q);
     clean_to_source(sim->grid.clean, mesh, sim->grid.open, q, w);
   }
+  return true;
+}
+
+void percolation_advance(struct two_phase *sim, double dt) {
+  double *work[2];
+  if (!sim->source || dt == 0) return;
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, 2, work);
+  const bool flows = find_carrier(sim, dt, work[0], work[1]);
+  scratch_give(&sim->scratch, __func__);
+  if (!flows) return;
   add_passage(sim, dt);
   const double energy = potential(sim);
-  fractions_carry(sim, dt, w, q);
-  sim->energy.dissipated += mesh_sum(mesh, energy - potential(sim));
+  fractions_carry(sim, dt, sim->carrier->v, sim->source->v);
+  sim->energy.dissipated += mesh_sum(sim->grid.mesh, energy - potential(sim));
 }
 
 double percolation_permeability(const struct two_phase *sim) {

@@ -178,15 +178,10 @@ static void add_percolation(struct two_phase *sim) {
 static void add_scratch(struct two_phase *sim) {
   static const char *const normal[] = {"normal_x", "normal_y", "normal_z"};
   static const char *const old[] = {"old_x", "old_y", "old_z"};
-  static const char *const cell[] = {"cell_0", "cell_1", "cell_2",
-                                     "cell_3", "cell_4", "cell_5",
-                                     "cell_6", "cell_7", "cell_8"};
-  static const char *const face[] = {"face_0", "face_1", "face_2", "face_3"};
   sim->rho = add_cell(sim, "density", "kg/m^3", "density", NULL, false);
   sim->eta = add_cell(sim, "viscosity", "Pa s", "viscosity, mean of the faces",
                       &remap_average, true);
   sim->eta->old = sim->eta; /* a step that fails does not touch it */
-  sim->frozen = add_cell(sim, "frozen", "1", "", NULL, false);
   sim->plane = add_cell(sim, "plane", "1", "", NULL, false);
   sim->band = add_cell(sim, "band", "1", "", NULL, false);
   for (int d = 0; d < DIM; d++) {
@@ -197,16 +192,14 @@ static void add_scratch(struct two_phase *sim) {
   add_known(sim);
   if (sim->params->side_walls.mu > 0) add_walls(sim);
   if (sim->params->permeable) add_percolation(sim);
-  const int ncells = (sim->params->theta < 1 ? 3 : 2) * DIM;
-  for (int k = 0; k < ncells; k++) {
-    sim->cell[k] = add_cell(sim, cell[k], "", "", NULL, false);
-  }
   sim->eta_f = add_face(sim, "face_viscosity");
   sim->alpha_f = add_face(sim, "face_specific_volume");
   sim->gravity_f = add_face(sim, "face_gravity");
   sim->u_half = add_face(sim, "face_half");
   sim->u_f->old = sim->u_half; /* when a step has failed */
-  for (int k = 0; k < DIM + 1; k++) sim->face[k] = add_face(sim, face[k]);
+  const int ncells = (sim->params->theta < 1 ? 3 : 2) * DIM + 1;
+  scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, ncells,
+               DIM + 1);
 }
 
 struct two_phase *two_phase_new_on(const struct params *params,

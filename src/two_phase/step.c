@@ -53,7 +53,10 @@
 enum { RETRIES = 3, SHORTENINGS = 30 };
 #define RETRY_FACTOR 0.25
 
-static struct projection projection_of(struct two_phase *sim) {
+/* Begin a projection, whose scratch end_projection gives back. */
+static struct projection begin_projection(struct two_phase *sim) {
+  double *rhs = scratch_take_one(&sim->scratch, FIELD_CELL, "projection");
+  double *flux = scratch_take_one(&sim->scratch, FIELD_FACE, "projection");
   return (struct projection){.mesh = sim->grid.mesh,
                              .hierarchy = sim->grid.hierarchy,
                              .rho = sim->rho->v,
@@ -62,19 +65,24 @@ static struct projection projection_of(struct two_phase *sim) {
                              .bc = sim->p->bc,
                              .tolerance = sim->params->tolerance_pressure,
                              .max_iterations = sim->params->max_iterations,
-                             .rhs = sim->cell[0]->v,
-                             .flux = sim->face[0]->v};
+                             .rhs = rhs,
+                             .flux = flux};
+}
+
+static void end_projection(struct two_phase *sim) {
+  scratch_give(&sim->scratch, "projection");
 }
 
 /* Stage 4: density, gravity and viscosity from c^{n+1/2}, D^n, p^{n-1/2}. */
-static struct balance balance_of(const struct two_phase *sim) {
+static struct balance balance_of(const struct two_phase *sim,
+                                 double *const work[5]) {
   const struct params *params = sim->params;
   struct balance balance = {.rho = sim->rho->v,
-                            .weight = sim->cell[0]->v,
-                            .level = sim->cell[1]->v,
-                            .count = sim->cell[2]->v,
-                            .near_level = sim->cell[3]->v,
-                            .near_count = sim->frozen->v};
+                            .weight = work[0],
+                            .level = work[1],
+                            .count = work[2],
+                            .near_level = work[3],
+                            .near_count = work[4]};
   for (int d = 0; d < DIM; d++) {
     const bool periodic = params->boundary[2 * d].type == BOUNDARY_PERIODIC;
     balance.gravity[d] = periodic ? 0 : params->gravity[d];
@@ -92,8 +100,9 @@ static void fill_pressure(struct two_phase *sim) {
 
 static void update_density(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  const struct balance balance = balance_of(sim);
-  double density[2], *normal[DIM];
+  double density[2], *normal[DIM], *work[5];
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, 5, work);
+  const struct balance balance = balance_of(sim, work);
   two_phase_densities(sim, density);
   field_arrays(sim->normal, normal);
   field_fill(mesh, sim->c);
@@ -106,15 +115,26 @@ static void update_density(struct two_phase *sim) {
   field_fill(mesh, sim->rho);
   properties_gravity(mesh, density, &balance, sim->c->v, normal, sim->plane->v,
                      sim->alpha_f->v, sim->gravity_f->v);
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Find g [nleaves] of the flux of a projection. */
+static void set_acceleration(struct two_phase *sim,
+                             const struct projection *projection,
+                             double *const g[DIM]) {
+  double *face = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  projection_acceleration(projection, face, g);
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* Find g of the last pressure with density, gravity and boundaries as they are.
  */
 static void find_acceleration(struct two_phase *sim, double *const g[DIM]) {
-  const struct projection projection = projection_of(sim);
+  const struct projection projection = begin_projection(sim);
   fill_pressure(sim);
   poisson_flux(sim->grid.mesh, projection.alpha_f, sim->p->v, projection.flux);
-  projection_acceleration(&projection, sim->face[1]->v, g);
+  set_acceleration(sim, &projection, g);
+  end_projection(sim);
 }
 
 /* Give leaves that hold grains this g: what the projection then changes of g,
@@ -123,13 +143,14 @@ static void find_acceleration(struct two_phase *sim, double *const g[DIM]) {
 static void update_acceleration(struct two_phase *sim) {
   double *g[DIM];
   if (sim->params->single_phase) return;
-  field_arrays(sim->cell, g);
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, g);
   find_acceleration(sim, g);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       if (sim->c->v[i] > HOLDS_GRAINS) sim->g[e]->v[i] = g[e][i];
     }
   }
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* The velocity is filled. */
@@ -137,71 +158,100 @@ static void update_viscosity(struct two_phase *sim,
                              struct field *const velocity[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct params *params = sim->params;
-  double *u[DIM], *normal[DIM];
+  double *u[DIM], *normal[DIM], *work[3];
   field_arrays(velocity, u), field_arrays(sim->normal, normal);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 3, work);
   fill_pressure(sim);
-  properties_shear_rate(mesh, sim->skin, u, sim->face[0]->v);
-  double *work[2] = {sim->face[1]->v, sim->face[2]->v};
+  properties_shear_rate(mesh, sim->skin, u, work[0]);
   properties_viscosity(mesh, sim->model.time, &params->grains,
                        params->single_phase ? NULL : &params->gas,
                        params->gravity, sim->c->v, normal, sim->plane->v,
-                       sim->p->v, sim->grid.closed, sim->face[0]->v, work,
+                       sim->p->v, sim->grid.closed, work[0], &work[1],
                        sim->eta_f->v);
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* Make u_f solenoidal by a pressure of its own: to the tolerance by a
  * projection over dt, then to round-off by cleaning. */
 static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
                                           double *u_f) {
-  struct projection projection = projection_of(sim);
-  struct field *phi = sim->frozen;
+  struct projection projection = begin_projection(sim);
+  double *phi = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   struct bc bc[MESH_MAX_PATCHES];
   memcpy(bc, sim->p->bc, sizeof bc);
   for (int k = 0; k < MESH_MAX_PATCHES; k++) bc[k].value = 0;
   projection.bc = bc;
-  memset(phi->v, 0, (size_t)sim->grid.mesh->ncells * sizeof(double));
-  struct solve_stats stats = projection_project(&projection, dt, u_f, phi->v);
+  memset(phi, 0, (size_t)sim->grid.mesh->ncells * sizeof(double));
+  struct solve_stats stats = projection_project(&projection, dt, u_f, phi);
+  scratch_give(&sim->scratch, __func__);
+  end_projection(sim);
   clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open, u_f);
   return stats;
 }
 
 /* What the predictor sees besides inertia: g, and with Crank-Nicolson what
  * viscosity and walls did in the last step, without which this one is of first
- * order in time. It is bounded, as an implicit solve has made it. Filled. */
+ * order in time. It is bounded, as an implicit solve has made it. Filled;
+ * scratch that advect_momentum gives back. */
 static void predictor_acceleration(struct two_phase *sim, double *g[DIM]) {
-  const bool viscous = sim->params->theta < 1;
+  static const struct bc neumann[MESH_MAX_PATCHES];
+  const struct bc *bc[DIM];
   const double *drag = sim->drag ? sim->drag->v : NULL;
-  struct field *const *sum = viscous ? &sim->cell[2 * DIM] : sim->g;
-  field_arrays(sum, g);
-  for (int e = 0; e < DIM && viscous; e++) {
+  scratch_take(&sim->scratch, FIELD_CELL, "predictor", DIM, g);
+  for (int e = 0; e < DIM; e++) {
+    bc[e] = neumann;
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       const double u = sim->u_old[e]->v[i];
       g[e][i] = sim->g[e]->v[i] + sim->viscous_g[e]->v[i] -
                 (drag ? drag[i] * u / sim->rho->v[i] : 0);
     }
   }
-  field_fill_many(sim->grid.mesh, DIM, sum);
+  mesh_fill(sim->grid.mesh, DIM, g, bc, false);
+}
+
+/* Begin the predictor or the advection, whose scratch end_advection gives back.
+ */
+static struct advection_work begin_advection(struct two_phase *sim) {
+  struct advection_work work = {.limiter = sim->params->limiter};
+  double *cell[2 * DIM], *face[DIM + 1];
+  scratch_take(&sim->scratch, FIELD_CELL, "advection", 2 * DIM, cell);
+  scratch_take(&sim->scratch, FIELD_FACE, "advection", DIM + 1, face);
+  for (int e = 0; e < DIM; e++) {
+    work.slope[e] = cell[e];
+    work.transverse[e] = cell[DIM + e];
+    work.flux[e] = face[e];
+  }
+  work.volume = face[DIM];
+  return work;
+}
+
+static void end_advection(struct two_phase *sim) {
+  scratch_give(&sim->scratch, "advection");
 }
 
 /* Stage 5: u_f at half steps, made exactly solenoidal, carries momentum away
  * from the interface. */
 static void advect_momentum(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
+  const bool viscous = sim->params->theta < 1;
   double *u[DIM], *g[DIM], *out[DIM];
   field_arrays(sim->u_old, u), field_arrays(sim->u, out);
-  struct advection_work work = {.limiter = sim->params->limiter,
-                                .volume = sim->face[0]->v};
-  for (int e = 0; e < DIM; e++) {
-    work.slope[e] = sim->cell[e]->v;
-    work.transverse[e] = sim->cell[DIM + e]->v;
-    work.flux[e] = sim->face[1 + e]->v;
+  if (viscous) {
+    predictor_acceleration(sim, g);
+  } else {
+    field_arrays(sim->g, g);
+    field_fill_many(mesh, DIM, sim->g);
   }
-  predictor_acceleration(sim, g);
+  struct advection_work work = begin_advection(sim);
   advection_predict(mesh, dt, u, g, sim->grid.closed, &work, sim->u_half->v);
+  end_advection(sim);
   sim->predictor = make_solenoidal(sim, 0.5 * dt, sim->u_half->v);
+  work = begin_advection(sim);
   advection_momentum(mesh, dt, u, g, sim->u_half->v,
                      sim->params->single_phase ? NULL : sim->band->v, &work,
                      out);
+  end_advection(sim);
+  if (viscous) scratch_give(&sim->scratch, "predictor");
 }
 
 /* Stage 6: rho u* - theta dt div(2 eta D(u*)) = rho (u + dt g)
@@ -239,24 +289,28 @@ static double velocity_scale(const struct two_phase *sim, double dt) {
   return mesh_max(sim->grid.mesh, most);
 }
 
-/* rho + dt drag of the side walls, in scratch. */
+/* Find rho + dt drag of the side walls, in scratch that diffuse_momentum gives
+ * back. */
 static const double *mass_with_walls(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct params *params = sim->params;
-  double gravity = 0, *mass = sim->frozen->v;
+  double gravity = 0, *u[DIM];
+  double *mass = scratch_take_one(&sim->scratch, FIELD_CELL, "mass");
   struct side_walls_state state = {
       .rho = sim->rho->v, .c = sim->c->v, .p = sim->p->v};
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, u);
   for (int e = 0; e < DIM; e++) {
-    double *u = sim->cell[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      u[i] = sim->u[e]->v[i] + dt * (sim->g[e]->v[i] + sim->viscous_g[e]->v[i]);
+      u[e][i] =
+          sim->u[e]->v[i] + dt * (sim->g[e]->v[i] + sim->viscous_g[e]->v[i]);
     }
     gravity = max2(gravity, fabs(params->gravity[e]));
-    state.u[e] = u, state.u_old[e] = sim->u_old[e]->v;
+    state.u[e] = u[e], state.u_old[e] = sim->u_old[e]->v;
   }
   const double creep =
       max2(SIDE_WALLS_CREEP * sqrt(gravity * params->size), 1e-300);
   side_walls_drag(mesh, &params->side_walls, dt, creep, &state, sim->drag->v);
+  scratch_give(&sim->scratch, __func__);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     mass[i] = sim->rho->v[i] + dt * sim->drag->v[i];
   }
@@ -274,17 +328,15 @@ static void diffuse_momentum(struct two_phase *sim, double dt) {
   field_arrays(sim->u, u);
   const double *rho = sim->rho->v;
   const double *mass = sim->drag ? mass_with_walls(sim, dt) : rho;
-  for (int e = 0; e < DIM; e++) {
-    rhs[e] = sim->cell[e]->v;
-    bc[e] = sim->u[e]->bc;
-  }
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, rhs);
+  for (int e = 0; e < DIM; e++) bc[e] = sim->u[e]->bc;
   viscous_rhs(sim, dt, rhs);
   for (int e = 0; e < DIM; e++) {
-    double *inviscid = sim->face[e]->v; /* which has room for the leaves */
+    double *viscous_g = sim->viscous_g[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      inviscid[i] = u[e][i] + dt * sim->g[e]->v[i];
-      u[e][i] =
-          (inviscid[i] + dt * sim->viscous_g[e]->v[i]) * (rho[i] / mass[i]);
+      const double inviscid = u[e][i] + dt * sim->g[e]->v[i];
+      u[e][i] = (inviscid + dt * viscous_g[i]) * (rho[i] / mass[i]);
+      viscous_g[i] = inviscid; /* until the solve is done */
     }
   }
   sim->scale = velocity_scale(sim, dt);
@@ -293,40 +345,47 @@ static void diffuse_momentum(struct two_phase *sim, double dt) {
                                params->tolerance_viscous * sim->scale,
                                params->max_iterations, u);
   for (int e = 0; e < DIM; e++) {
-    const double *inviscid = sim->face[e]->v;
+    double *viscous_g = sim->viscous_g[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       const double lost = u[e][i] * (mass[i] / rho[i] - 1); /* to the walls */
-      sim->viscous_g[e]->v[i] = (u[e][i] - inviscid[i] + lost) / dt;
+      viscous_g[i] = (u[e][i] - viscous_g[i] + lost) / dt;
       u[e][i] -= dt * sim->g[e]->v[i];
     }
   }
+  scratch_give(&sim->scratch, __func__);
+  if (sim->drag) scratch_give(&sim->scratch, "mass");
 }
 
-/* Stage 8: before repetition k, viscosity from the latest u and p; the
- * advected velocity is set back. */
-static void repeat_properties(struct two_phase *sim, int k) {
+/* Stage 8: before repetition k, viscosity from the latest u and p; the advected
+ * velocity, kept from the first on, is set back. */
+static void repeat_properties(struct two_phase *sim, int k,
+                              double *advected[DIM]) {
   const size_t bytes = (size_t)sim->grid.mesh->nleaves * sizeof(double);
   if (sim->params->picard == 0) return;
   if (k > 0) {
     field_fill_many(sim->grid.mesh, DIM, sim->u);
     update_viscosity(sim, sim->u);
+  } else {
+    scratch_take(&sim->scratch, FIELD_CELL, "advected", DIM, advected);
   }
   for (int e = 0; e < DIM; e++) {
-    double *advected = sim->cell[DIM + e]->v;
-    memcpy(k > 0 ? sim->u[e]->v : advected, k > 0 ? advected : sim->u[e]->v,
-           bytes);
+    double *u = sim->u[e]->v;
+    memcpy(k > 0 ? u : advected[e], k > 0 ? advected[e] : u, bytes);
   }
+  if (k == sim->params->picard) scratch_give(&sim->scratch, "advected");
 }
 
-/* How far repetition k has moved u_f from what project has kept. */
-static void measure_repetition(struct two_phase *sim, int k) {
+/* How far repetition k has moved u_f from what turn_face_velocity has kept in
+ * last. */
+static void measure_repetition(struct two_phase *sim, int k,
+                               const double *last) {
   const struct mesh *mesh = sim->grid.mesh;
-  const double *last = sim->face[DIM]->v;
   double change = 0;
   if (k == 0) return;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     change = max2(change, fabs(sim->u_f->v[f] - last[f]));
   }
+  scratch_give(&sim->scratch, "last");
   sim->repeat_change = mesh_max(mesh, change);
   log_info("step %lld, repetition %d: velocity changes by %.3g of %.3g",
            (long long)sim->model.step, k, sim->repeat_change, sim->scale);
@@ -356,33 +415,37 @@ static void add_wall_work(struct two_phase *sim, double dt) {
 
 /* Room for the new u_f. The first takes that of the predictor, which has done
  * its work, and leaves the last step's there, should this one fail (u_f->old).
- * A repetition overwrites the new one, and keeps it to be compared. */
-static void turn_face_velocity(struct two_phase *sim, int k) {
+ * A repetition overwrites the new one, and keeps a copy of it, which is
+ * returned, to be compared. */
+static const double *turn_face_velocity(struct two_phase *sim, int k) {
   double *last = sim->u_f->v;
   if (k > 0) {
-    memcpy(sim->face[DIM]->v, last,
-           (size_t)sim->grid.mesh->nfaces_all * sizeof(double));
-    return;
+    double *copy = scratch_take_one(&sim->scratch, FIELD_FACE, "last");
+    return memcpy(copy, last,
+                  (size_t)sim->grid.mesh->nfaces_all * sizeof(double));
   }
   sim->u_f->v = sim->u_half->v;
   sim->u_half->v = last;
+  return NULL;
 }
 
 /* Stage 7: u^{n+1}, u_f^{n+1}, p^{n+1/2}; repetition k of it. */
 static void project(struct two_phase *sim, double dt, int k) {
   const struct mesh *mesh = sim->grid.mesh;
-  struct projection projection = projection_of(sim);
+  const double *last = turn_face_velocity(sim, k);
+  struct projection projection = begin_projection(sim);
   double *u[DIM], *g[DIM];
-  turn_face_velocity(sim, k);
   field_arrays(sim->u, u), field_arrays(sim->g, g);
   field_fill_many(mesh, DIM, sim->u);
   projection_face_velocity(&projection, dt, u, sim->u_f->v);
   sim->pressure = projection_project(&projection, dt, sim->u_f->v, sim->p->v);
   pressure_level_set(sim);
-  projection_acceleration(&projection, sim->face[1]->v, g);
+  set_acceleration(sim, &projection, g);
+  end_projection(sim);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * g[e][i];
   }
+  measure_repetition(sim, k, last);
 }
 
 /* Does the grid follow more than the surface? */
@@ -466,14 +529,14 @@ static void advance_state(struct two_phase *sim, double dt, double rate) {
   update_acceleration(sim), lap(sim, STAGE_DENSITY);
   update_viscosity(sim, sim->u_old), lap(sim, STAGE_RHEOLOGY);
   advect_momentum(sim, dt), lap(sim, STAGE_ADVECTION);
+  double *advected[DIM];
   for (int k = 0; k <= sim->params->picard; k++) {
     const struct solve_stats viscous = sim->viscous, pressure = sim->pressure;
-    repeat_properties(sim, k), lap(sim, STAGE_RHEOLOGY);
+    repeat_properties(sim, k, advected), lap(sim, STAGE_RHEOLOGY);
     diffuse_momentum(sim, dt), lap(sim, STAGE_VISCOUS);
     project(sim, dt, k), lap(sim, STAGE_PROJECTION);
     if (k > 0) add_solve(&sim->viscous, &viscous);
     if (k > 0) add_solve(&sim->pressure, &pressure);
-    measure_repetition(sim, k), lap(sim, STAGE_OTHER);
   }
   viscous_work_add(sim, dt);
   add_wall_work(sim, dt);
@@ -516,6 +579,8 @@ static double find_step(struct two_phase *sim, double dt_max) {
 int step_advance(struct two_phase *sim, double dt_max) {
   stopwatch_start(&sim->model.stopwatch);
   const double dt = find_step(sim, dt_max);
+  const char *taker = scratch_taker(&sim->scratch);
+  CHECK(!taker, "%s has not given its scratch back", taker);
   if (dt == 0) return EXIT_NUMERICAL;
   sim->model.time += dt;
   sim->model.dt = dt;
@@ -533,9 +598,11 @@ int step_advance(struct two_phase *sim, double dt_max) {
 
 /* Pressure and acceleration of the state at rest, without viscosity. */
 static struct solve_stats static_pressure(struct two_phase *sim) {
-  struct projection projection = projection_of(sim);
+  struct projection projection = begin_projection(sim);
   double *rest[DIM], *g[DIM], size = 0;
-  field_arrays(sim->u_old, rest), field_arrays(sim->g, g);
+  double *u_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, rest);
+  field_arrays(sim->g, g);
   for (int d = 0; d < DIM; d++) {
     memset(rest[d], 0, (size_t)sim->grid.mesh->ncells * sizeof(double));
     size = max2(size, fabs(sim->params->gravity[d]));
@@ -545,16 +612,18 @@ static struct solve_stats static_pressure(struct two_phase *sim) {
   const double cells = exp2(sim->params->level_max);
   projection.tolerance =
       size * cells / sim->params->size * max2(1e-13, 1e-16 * cells);
-  projection_face_velocity(&projection, 1, rest, sim->face[1]->v);
-  struct solve_stats stats =
-      projection_project(&projection, 1, sim->face[1]->v, sim->p->v);
+  projection_face_velocity(&projection, 1, rest, u_f);
+  struct solve_stats stats = projection_project(&projection, 1, u_f, sim->p->v);
+  scratch_give(&sim->scratch, __func__);
   pressure_level_set(sim);
-  projection_acceleration(&projection, sim->face[1]->v, g);
+  set_acceleration(sim, &projection, g);
+  end_projection(sim);
   return stats;
 }
 
+void step_density(struct two_phase *sim) { update_density(sim); }
+
 void step_acceleration(struct two_phase *sim, double *const g[DIM]) {
-  update_density(sim);
   find_acceleration(sim, g);
 }
 

@@ -29,14 +29,23 @@ static inline double bagnold_exact(double slope, double y) {
   return 2. / 3 * bagnold_rate(slope, 0) * (1 - pow(1 - y, 1.5));
 }
 
-/* Error of u in every leaf, in sim->frozen, which is scratch. */
+/* Error of u in every leaf, [nleaves], for the caller to free. */
+static inline double *bagnold_errors(const struct two_phase *sim,
+                                     double slope) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *error = MEM_NEW(double, mesh->nleaves);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    error[i] = sim->u[0]->v[i] - bagnold_exact(slope, mesh->x[i][1]);
+  }
+  return error;
+}
+
 static inline struct norms bagnold_norms(const struct two_phase *sim,
                                          double slope) {
-  double *error = sim->frozen->v;
-  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    error[i] = sim->u[0]->v[i] - bagnold_exact(slope, sim->grid.mesh->x[i][1]);
-  }
-  return norms_of(sim->grid.mesh, error);
+  double *error = bagnold_errors(sim, slope);
+  const struct norms norms = norms_of(sim->grid.mesh, error);
+  mem_free(error);
+  return norms;
 }
 
 /* A leaf next to the surface. */

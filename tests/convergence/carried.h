@@ -95,17 +95,22 @@ static inline void carried_adapt(struct carried *c, double dt) {
 static inline void carried_step(struct carried *c) {
   struct two_phase *sim = c->sim;
   const struct bench bench = {.mesh = sim->grid.mesh};
+  struct field cc = {.v =
+                         scratch_take_one(&sim->scratch, FIELD_CELL, __func__)};
+  struct field flux = {
+      .v = scratch_take_one(&sim->scratch, FIELD_FACE, __func__)};
   struct transport t = {.c = sim->c,
                         .u_f = sim->u_f,
                         .plane = sim->plane,
-                        .frozen = sim->frozen,
-                        .flux = sim->face[0]};
+                        .frozen = &cc,
+                        .flux = &flux};
   const double dt = carried_dt(c), factor = carried_path(c, dt) / dt;
   field_arrays(sim->normal, t.normal);
   for (int32_t f = 0; f < sim->grid.mesh->nfaces_all; f++) {
     sim->u_f->v[f] = factor * c->steady[f];
   }
   transport_step(&bench, &t, (int)(sim->model.step % DIM), dt);
+  scratch_give(&sim->scratch, __func__);
   const double volume = integral(sim->grid.mesh, sim->c->v);
   c->excess = larger(c->excess, transport_excess(&bench, &t));
   c->drift = larger(c->drift, fabs(volume / c->volume - 1));
@@ -116,12 +121,14 @@ static inline void carried_step(struct carried *c) {
 /* Integral of |c - exact| over the box. */
 static inline double carried_error(struct carried *c) {
   struct two_phase *sim = c->sim;
-  double *error = sim->cell[0]->v;
+  double *error = MEM_NEW(double, sim->grid.mesh->nleaves);
   carried_shape(c, error);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     error[i] = fabs(error[i] - sim->c->v[i]);
   }
-  return integral(sim->grid.mesh, error);
+  const double sum = integral(sim->grid.mesh, error);
+  mem_free(error);
+  return sum;
 }
 
 /* One run; adapted: the grid is fine (`level`) in a band of three cells along

@@ -44,23 +44,27 @@ static double viscosity_error(const struct two_phase *sim) {
 
 /* Error of u relative to the exact one of the surface. */
 static double creep_error(const struct two_phase *sim) {
-  double *error = sim->frozen->v;
+  double *error = MEM_NEW(double, sim->grid.mesh->nleaves);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double y = sim->grid.mesh->x[i][1];
     const double scale = kEtaMax / sin(kHeld);
     error[i] = 2 * (scale * sim->u[0]->v[i] - (y - 0.5 * y * y));
   }
-  return norms_of(sim->grid.mesh, error).l2;
+  const double l2 = norms_of(sim->grid.mesh, error).l2;
+  mem_free(error);
+  return l2;
 }
 
-/* Root of the integral of s e^2 over the errors e that bagnold_norms left. */
+/* Root of the integral of s e^2, e the error of u. */
 static double deep_norm(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *e = sim->frozen->v;
+  double *e = bagnold_errors(sim, kFlowing);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     e[i] *= sqrt(1 - mesh->x[i][1]);
   }
-  return norms_of(mesh, e).l2;
+  const double l2 = norms_of(mesh, e).l2;
+  mem_free(e);
+  return l2;
 }
 
 /* Norms of the error that exact shear rates on faces leave, with finest cells

@@ -86,13 +86,15 @@ static double wrapped_square(void *context, const double x[3]) {
 /* Part of the square's area that is not where it should be. */
 static double shape_error(struct two_phase *sim, const struct track *to) {
   struct body body = start;
-  double *error = sim->cell[0]->v;
+  double *error = MEM_NEW(double, sim->grid.mesh->nleaves);
   for (int d = 0; d < 2; d++) body.centre[d] = to->centre[d];
   fill_shape(sim->grid.mesh, wrapped_square, &body, error);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     error[i] = fabs(sim->c->v[i] - error[i]);
   }
-  return integral(sim->grid.mesh, error);
+  const double sum = integral(sim->grid.mesh, error);
+  mem_free(error);
+  return sum;
 }
 
 static void run_ratio(struct report *report, const char *grid, double ratio,

@@ -273,14 +273,16 @@ static double drift(int d, const double x[3]) {
 /* Move the grains by `leaves` of the finest along a diagonal. */
 static void move(struct two_phase *sim, double leaves) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *normal[DIM];
+  double *normal[DIM], *face[2], *flux, *u_f;
+  double *cc = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
+  flux = face[0], u_f = face[1];
   field_arrays(sim->normal, normal);
   fill_faces(mesh, drift, sim->u_f->v);
   const double dt = 0.25 * (leaves > 0 ? 1 : -1) / (1 << FINE);
   for (double done = 0; done < fabs(leaves) - 1e-9; done += 0.25) {
-    vof_freeze(mesh, sim->c->v, sim->frozen->v);
+    vof_freeze(mesh, sim->c->v, cc);
     for (int d = 0; d < DIM; d++) {
-      double *flux = sim->face[0]->v, *u_f = sim->face[1]->v;
       const double sign = dt > 0 ? 1 : -1;
       for (int32_t f = 0; f < mesh->nfaces_all; f++) {
         u_f[f] = sign * sim->u_f->v[f];
@@ -289,9 +291,10 @@ static void move(struct two_phase *sim, double leaves) {
       vof_reconstruct(mesh, sim->c->v, normal, sim->plane->v);
       vof_flux(mesh, d, fabs(dt), u_f, NULL, sim->c->v, normal, sim->plane->v,
                flux);
-      vof_update(mesh, d, fabs(dt), u_f, flux, sim->frozen->v, sim->c->v);
+      vof_update(mesh, d, fabs(dt), u_f, flux, cc, sim->c->v);
     }
   }
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* After the surface has moved the band follows within a few rounds, and what

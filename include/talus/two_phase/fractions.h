@@ -34,8 +34,8 @@ void fractions_update_planes(struct two_phase *sim);
 
 /* c lags half a step behind `time`. The first call takes it to `time` with
  * the present velocity, in parts where c would leave [0, 1], so that it can be
- * measured; the second sets back what it was, to the last bit, from
- * sim->cell[2 DIM - 1]. Nothing else of the state changes. Collective. */
+ * measured; the second sets back what it was, to the last bit. In between it
+ * takes an array of scratch. Nothing else of the state changes. Collective. */
 void fractions_synchronise(struct two_phase *sim);
 void fractions_desynchronise(struct two_phase *sim);
 /* Copy tracer k as it is at `time` to value [nleaves]. The state stays as it

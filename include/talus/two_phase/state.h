@@ -13,6 +13,7 @@
 #include "talus/grid.h"
 #include "talus/model.h"
 #include "talus/params.h"
+#include "talus/scratch.h"
 #include "talus/solve.h"
 #include "talus/two_phase/conditions.h"
 #include "talus/two_phase/percolation.h"
@@ -75,12 +76,11 @@ struct two_phase {
   struct field *normal[DIM], *plane; /* planes of cut leaves */
   bool planes_hold;                  /* they are those of c as it is */
   struct skin *skin;                 /* of c, none in a single phase */
-  struct field *frozen;              /* cc of vof.h, or scratch */
   struct field *band;                /* leaves whose momentum rides with c */
   struct field *u_old[DIM];          /* u^n while u is being advanced */
   struct field *u_half;              /* u_f^{n+1/2} */
-  struct field *cell[3 * DIM];       /* scratch, 2 DIM of them if theta is 1 */
-  struct field *face[DIM + 1];       /* scratch */
+  struct scratch scratch;            /* for stages */
+  double *c_before; /* c while it is synchronised (fractions.h), else NULL */
 
   /* For output, on demand (closure_fields.h) */
   struct field *shear_rate;
