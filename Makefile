@@ -28,7 +28,7 @@ WARNINGS     = -Wall -Wextra -Wshadow -Wstrict-prototypes \
                -Wmissing-prototypes -Wvla $(WERROR)
 CFLAGS       = $(OPT_$(MODE)) -g -fno-math-errno $(WARNINGS)
 CPPFLAGS     = -D_POSIX_C_SOURCE=200809L -DTALUS_VERSION='"$(VERSION)"' \
-               -Iinclude -I$(BUILD) $(P4EST_CFLAGS) $(PKG_CFLAGS)
+               -Iinclude $(P4EST_CFLAGS) $(PKG_CFLAGS)
 COMPILE      = $(CC) -std=c11 $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS)
 LDLIBS       = $(P4EST_LIBS) $(PKG_LIBS) -lz -lm
 
@@ -84,6 +84,7 @@ $(BUILD)/$(1)d/%.o: %.c $(BUILD)/flags
 	@mkdir -p $$(@D)
 	$$(call say,$$@)$$(COMPILE) -DDIM=$(1) -MMD -MP -c -o $$@ $$<
 $(BUILD)/$(1)d/src/models.o: $(BUILD)/models.inc
+$(BUILD)/$(1)d/src/models.o: CPPFLAGS += -I$(BUILD)
 $(BUILD)/$(1)d/libtalus.a: $(SOURCES:%.c=$(BUILD)/$(1)d/%.o) $(BUILD)/sources
 	@rm -f $$@
 	$$(call say,$$@)ar qcs $$@ $$(filter %.o,$$^)
@@ -93,6 +94,7 @@ define test_rules # 1: the dimension, 2: the level
 $(BUILD)/$(1)d/$(2): $(patsubst %.c,$(BUILD)/$(1)d/%.o,$(sort $(wildcard \
   tests/$(2)/*.c))) $(BUILD)/$(1)d/libtalus.a
 $(BUILD)/$(1)d/tests/$(2)/main.o: $(BUILD)/$(2)_suites.inc
+$(BUILD)/$(1)d/tests/$(2)/main.o: CPPFLAGS += -I$(BUILD)
 endef
 $(foreach d,2 3,$(eval $(call rules,$d)) \
   $(foreach l,$(LEVELS),$(eval $(call test_rules,$d,$l))))

@@ -110,7 +110,7 @@ run_one() {
 
 # Names the files that `make format` would change, fails if there are any.
 find_unformatted() {
-  find include src tests -name '*.[ch]' -exec clang-format-14 --dry-run {} + \
+  find include src tree tests -name '*.[ch]' -exec clang-format-14 --dry-run {} + \
     2>&1 | sed -n 's/^\([^:]*\):.*Wclang-format.*/make format: \1/p' | sort -u |
     grep . && return 1
   return 0

@@ -424,29 +424,51 @@ def draw_count(ax, s):
     ax.set_ylim(0, 1.05 * s["cells"].max())
 
 
+def draw_column(ax, s, name):
+    ax.plot(s["time"], s[name], color=INK)
+    ax.set_title(name, loc="left")
+
+
+def history_panels(s, run, change):
+    """[function that draws on axes]: what the columns of the model allow, or
+    else each of its columns but two."""
+    panels = [
+        (("front", "height"), lambda ax: draw_length(ax, s, run.units)),
+        (("kinetic", "potential", "dissipated", "numerical"),
+         lambda ax: draw_energy(ax, s, run.parameters, change)),
+        (("max_speed",), lambda ax: draw_speed(ax, s, run.units)),
+        (("cells",), lambda ax: draw_count(ax, s))]
+    known = [draw for needs, draw in panels if all(n in s for n in needs)]
+    return known or [lambda ax, n=name: draw_column(ax, s, n)
+                     for name in s if name not in ("step", "time")]
+
+
 def plot_history(options, run):
     s = run_data.read_series(options.directory)
     if len(s["time"]) < 2:
         return None
-    if not s["volume"].any():
+    volume = s.get("volume", np.ones(len(s["time"])))
+    if not volume.any():
         print("plot: no history.png, as there are no grains", file=sys.stderr)
         return None
-    change = s["volume"] / (s["volume"][0] or s["volume"].max()) - 1
+    change = volume / (volume[0] or volume.max()) - 1
     change = change[np.argmax(np.abs(change))]
-    fig, axes = plt.subplots(2, 2, figsize=(9.6, 6.2), sharex=True,
-                             layout="constrained")
-    draw_length(axes[0, 0], s, run.units)
-    draw_energy(axes[0, 1], s, run.parameters, change)
-    draw_speed(axes[1, 0], s, run.units)
-    draw_count(axes[1, 1], s)
-    for ax in axes.flat:
+    panels = history_panels(s, run, change)
+    columns = min(2, len(panels))
+    rows = -(-len(panels) // columns)
+    fig, axes = plt.subplots(rows, columns, figsize=(4.8 * columns, 3.1 * rows),
+                             sharex=True, squeeze=False, layout="constrained")
+    for ax, draw in zip(axes.flat, panels):
+        draw(ax)
         ax.margins(x=0)
         ax.grid(alpha=0.25, lw=0.6)
-    for ax in axes[0]:
-        ax.legend(fontsize=9, loc="best")
-    for ax in axes[1]:
+        if ax.get_legend_handles_labels()[0]:
+            ax.legend(fontsize=9, loc="best")
+    for ax in axes.flat[len(panels):]:
+        ax.set_visible(False)
+    for ax in axes[-1]:
         ax.set_xlabel(label("time", run.units.time))
-    fig.suptitle("\n".join(run.title(9.6) + [words_on_volume(change)]),
+    fig.suptitle("\n".join(run.title(4.8 * columns) + [words_on_volume(change)]),
                  fontsize=11)
     return save(fig, options, "history.png")
 

@@ -246,5 +246,6 @@ void build_params(struct case_file *file) {
   check_grid(file);
   check_origin(file);
   boundary_check(file);
-  pressure_check(file);
+  if (keys_find(model_of(file), "boundary.pressure_level") != NULL)
+    pressure_check(file);
 }

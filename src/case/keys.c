@@ -9,9 +9,6 @@
 
 #define AT(member) offsetof(struct params, member)
 #define SOME_LEVEL .low = 0, .high = CASE_MAX_LEVEL_2D
-/* enum limiter */
-static const char *const LIMITERS[] = {"none", "minmod", "generalised_minmod",
-                                       NULL};
 /* enum criterion_phase */
 static const char *const PHASES[] = {"both", "grains", "gas", NULL};
 
@@ -71,14 +68,6 @@ static const struct key KEYS[] = {
      .help = "upper y in 2D, upper z in 3D"},
     {"boundary.patches", KEY_PATCHES, KEY_OPTIONAL, .unit = "",
      .help = "boundaries by name, for sides that are functions"},
-    {"boundary.pressure_level", KEY_PRESSURE, KEY_ANY, KEY_OPTIONAL, .unit = "Pa",
-     .offset = AT(pressure_level),
-     .help = "pressure when no boundary sets any: {0, at = \"gas\"}, mean "
-             "over the gas, its own weight below the top of the box taken "
-             "off, the default if there is gas, or {0, at = {x, y}}, at a "
-             "point; a plain number is the mean over the box and "
-             "contains the weight of the grains, which drifts as they fall, "
-             "so that friction does too"},
 
     {"adapt", KEY_CRITERIA, KEY_OPTIONAL, .unit = "",
      .help = "list of at most 8 criteria, the finest wins; without it the "
@@ -113,15 +102,6 @@ static const struct key KEYS[] = {
     {"solver.max_iterations", KEY_INTEGER, .low = 1, .high = 1e6,
      KEY_DEFAULT "100", .unit = "", .offset = AT(max_iterations),
      .help = "of one linear solve"},
-    {"solver.picard", KEY_INTEGER, .low = 0, .high = 1000, KEY_DEFAULT "0",
-     .unit = "", .offset = AT(picard),
-     .help = "repetitions of viscosity and projection in a step"},
-    {"solver.theta", KEY_NUMBER, .low = 0.5, .high = 1, KEY_DEFAULT "1",
-     .unit = "", .offset = AT(theta),
-     .help = "viscous step: 1 backward Euler, 0.5 Crank-Nicolson"},
-    {"solver.limiter", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "none", .unit = "",
-     .offset = AT(limiter), .choices = LIMITERS,
-     .help = "of slopes in momentum advection, for steep velocities"},
 
     {"output", KEY_SECTION, KEY_NEEDED, .help = "when to end and what to write"},
     {"output.stop", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "s",

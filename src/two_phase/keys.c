@@ -6,6 +6,9 @@
 
 #define AT(member) offsetof(struct params, member)
 
+/* enum limiter */
+static const char *const LIMITERS[] = {"none", "minmod", "generalised_minmod",
+                                       NULL};
 /* enum permeability */
 static const char *const PERMEABILITIES[] = {"auto", "no", "yes", NULL};
 
@@ -29,6 +32,23 @@ static const struct key KEYS[] = {
      .offset = AT(gas.density), .help = "density"},
     {"gas.rheology", KEY_CLOSURE, KEY_NEEDED, .unit = "", .offset = AT(gas),
      .help = "closure, see below"},
+    {"boundary.pressure_level", KEY_PRESSURE, KEY_ANY, KEY_OPTIONAL, .unit = "Pa",
+     .offset = AT(pressure_level),
+     .help = "pressure when no boundary sets any: {0, at = \"gas\"}, mean "
+             "over the gas, its own weight below the top of the box taken "
+             "off, the default if there is gas, or {0, at = {x, y}}, at a "
+             "point; a plain number is the mean over the box and "
+             "contains the weight of the grains, which drifts as they fall, "
+             "so that friction does too"},
+    {"solver.picard", KEY_INTEGER, .low = 0, .high = 1000, KEY_DEFAULT "0",
+     .unit = "", .offset = AT(picard),
+     .help = "repetitions of viscosity and projection in a step"},
+    {"solver.theta", KEY_NUMBER, .low = 0.5, .high = 1, KEY_DEFAULT "1",
+     .unit = "", .offset = AT(theta),
+     .help = "viscous step: 1 backward Euler, 0.5 Crank-Nicolson"},
+    {"solver.limiter", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "none", .unit = "",
+     .offset = AT(limiter), .choices = LIMITERS,
+     .help = "of slopes in momentum advection, for steep velocities"},
 };
 /* clang-format on */
 
