@@ -80,6 +80,19 @@ void scratch_give(struct scratch *scratch, const char *taker) {
   CHECK(given, "%s gives back scratch that it has not taken", taker);
 }
 
+void scratch_exchange(struct scratch *scratch, const double *taken,
+                      double *other) {
+  struct field *found = NULL;
+  for (int location = FIELD_CELL; location <= FIELD_FACE; location++) {
+    for (int k = 0; k < scratch->n[location]; k++) {
+      struct field *array = scratch->array[location][k];
+      if (array->v == taken && scratch->taker[location][k]) found = array;
+    }
+  }
+  CHECK(found, "an array that is not taken cannot be exchanged");
+  found->v = other;
+}
+
 const char *scratch_taker(const struct scratch *scratch) {
   for (int location = FIELD_CELL; location <= FIELD_FACE; location++) {
     for (int k = 0; k < scratch->n[location]; k++) {

@@ -39,6 +39,10 @@ void scratch_take(struct scratch *scratch, enum field_location location,
 double *scratch_take_one(struct scratch *scratch, enum field_location location,
                          const char *taker);
 void scratch_give(struct scratch *scratch, const char *taker);
+/* Have the pool own `other`, an array of the same length, in place of one that
+ * is taken: two arrays change their roles without a copy. */
+void scratch_exchange(struct scratch *scratch, const double *taken,
+                      double *other);
 
 /* Name somebody who has not given back; NULL: all arrays are free. */
 const char *scratch_taker(const struct scratch *scratch);

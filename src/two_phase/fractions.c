@@ -82,12 +82,12 @@ static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
 static void sweep_grains(struct two_phase *sim, int d, double dt,
                          const double *u_f, double *cc) {
   const struct mesh *mesh = sim->grid.mesh;
-  double density[2], *u[DIM], *start[DIM], *cell[DIM + 1], *face[DIM + 1];
+  double density[2], *u[DIM], *start[DIM], *cell[DIM + 1], *face[DIM + 2];
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM + 1, cell);
-  scratch_take(&sim->scratch, FIELD_FACE, __func__, DIM + 1, face);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, DIM + 2, face);
   struct sweep sweep = {.plane = sim->plane->v, .cc = cc, .flux = face[DIM]};
   double *c_old = cell[DIM];
-  struct momentum_flux flux = {.mass = sim->u_half->v};
+  struct momentum_flux flux = {.mass = face[DIM + 1]};
   two_phase_densities(sim, density);
   field_arrays(sim->u, u), field_arrays(sim->u_old, start);
   field_arrays(sim->normal, sweep.normal);

@@ -196,10 +196,13 @@ static void add_scratch(struct two_phase *sim) {
   sim->alpha_f = add_face(sim, "face_specific_volume");
   sim->gravity_f = add_face(sim, "face_gravity");
   sim->u_half = add_face(sim, "face_half");
+  sim->u_half->on_demand = true;
+  mem_free(sim->u_half->v);
+  sim->u_half->v = NULL;
   sim->u_f->old = sim->u_half; /* when a step has failed */
   const int ncells = (sim->params->theta < 1 ? 3 : 2) * DIM + 1;
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, ncells,
-               DIM + 1);
+               DIM + 2);
 }
 
 struct two_phase *two_phase_new_on(const struct params *params,

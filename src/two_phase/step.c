@@ -243,6 +243,7 @@ static void advect_momentum(struct two_phase *sim, double dt) {
     field_fill_many(mesh, DIM, sim->g);
   }
   struct advection_work work = begin_advection(sim);
+  sim->u_half->v = scratch_take_one(&sim->scratch, FIELD_FACE, "u_half");
   advection_predict(mesh, dt, u, g, sim->grid.closed, &work, sim->u_half->v);
   end_advection(sim);
   sim->predictor = make_solenoidal(sim, 0.5 * dt, sim->u_half->v);
@@ -424,6 +425,7 @@ static const double *turn_face_velocity(struct two_phase *sim, int k) {
     return memcpy(copy, last,
                   (size_t)sim->grid.mesh->nfaces_all * sizeof(double));
   }
+  scratch_exchange(&sim->scratch, sim->u_half->v, last);
   sim->u_f->v = sim->u_half->v;
   sim->u_half->v = last;
   return NULL;
@@ -553,6 +555,12 @@ static void set_back(struct two_phase *sim, const struct two_phase *before) {
   sim->travel = before->travel;
 }
 
+/* Give back the face velocity of before a step, which is done or set back. */
+static void drop_half(struct two_phase *sim) {
+  scratch_give(&sim->scratch, "u_half");
+  sim->u_half->v = NULL;
+}
+
 /* Take a step of at most dt_max, as short as it has to be; returns its dt, or
  * 0, the state being that before the step. */
 static double find_step(struct two_phase *sim, double dt_max) {
@@ -566,8 +574,10 @@ static double find_step(struct two_phase *sim, double dt_max) {
     advance_state(sim, dt, rate);
     const bool failed = has_failed(sim);
     dt_max = failed ? RETRY_FACTOR * dt : time_step_allowed(sim, dt);
-    if (dt_max >= dt) return dt;
-    set_back(sim, &before);
+    const bool good = dt_max >= dt;
+    if (!good) set_back(sim, &before);
+    drop_half(sim);
+    if (good) return dt;
     failures += failed;
     if (failures > RETRIES) break;
     log_info("step %lld: dt %.3g is repeated with %.3g",

@@ -60,7 +60,7 @@ struct discharge {
  * what is at the outlet. */
 static double outlet_flux(struct two_phase *sim, struct discharge *out) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *u_f = sim->u_half->v, sum = 0;
+  double *u_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__), sum = 0;
   memcpy(u_f, sim->u_f->v, (size_t)mesh->nfaces_all * sizeof(double));
   clean_face_velocity(sim->grid.clean, mesh, sim->grid.open, u_f);
   for (int32_t f = mesh->face_begin[1]; f < mesh->face_begin[2]; f++) {
@@ -72,6 +72,7 @@ static double outlet_flux(struct two_phase *sim, struct discharge *out) {
     out->least = smaller(out->least, sim->c->v[leaf]);
     if (sim->model.time > 0.1) out->slowest = smaller(out->slowest, -u_f[f]);
   }
+  scratch_give(&sim->scratch, __func__);
   return sum;
 }
 

@@ -78,6 +78,19 @@ START_TEST(arrays_have_the_length_of_the_mesh) {
 }
 END_TEST
 
+START_TEST(a_taken_array_can_be_exchanged) {
+  struct pool pool;
+  pool_begin(&pool);
+  double *state = MEM_NEW(double, pool.lengths.nfaces_all);
+  double *v = scratch_take_one(&pool.scratch, FIELD_FACE, "a");
+  scratch_exchange(&pool.scratch, v, state);
+  scratch_give(&pool.scratch, "a");
+  ck_assert_ptr_eq(scratch_take_one(&pool.scratch, FIELD_FACE, "b"), state);
+  mem_free(v); /* no longer the pool's */
+  pool_end(&pool);
+}
+END_TEST
+
 START_TEST(debug_builds_poison_scratch) {
   struct pool pool;
   pool_begin(&pool);
@@ -107,6 +120,16 @@ START_TEST(more_than_there_is_is_an_error) {
 }
 END_TEST
 
+START_TEST(exchanging_what_is_not_taken_is_an_error) {
+  struct pool pool;
+  double other[1];
+  pool_begin(&pool);
+  double *v = scratch_take_one(&pool.scratch, FIELD_CELL, "one");
+  scratch_give(&pool.scratch, "one");
+  scratch_exchange(&pool.scratch, v, other);
+}
+END_TEST
+
 START_TEST(giving_what_was_not_taken_is_an_error) {
   struct pool pool;
   pool_begin(&pool);
@@ -122,9 +145,12 @@ Suite *scratch_suite(void) {
   tcase_add_test(tcase, all_arrays_of_a_taker_are_given_back);
   tcase_add_test(tcase, who_has_not_given_back_is_named);
   tcase_add_test(tcase, arrays_have_the_length_of_the_mesh);
+  tcase_add_test(tcase, a_taken_array_can_be_exchanged);
   tcase_add_test(tcase, debug_builds_poison_scratch);
   tcase_add_exit_test(tcase, a_second_take_is_an_error, EXIT_SYSTEM);
   tcase_add_exit_test(tcase, more_than_there_is_is_an_error, EXIT_SYSTEM);
+  tcase_add_exit_test(tcase, exchanging_what_is_not_taken_is_an_error,
+                      EXIT_SYSTEM);
   tcase_add_exit_test(tcase, giving_what_was_not_taken_is_an_error,
                       EXIT_SYSTEM);
   suite_add_tcase(suite, tcase);

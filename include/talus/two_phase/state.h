@@ -78,8 +78,8 @@ struct two_phase {
   struct skin *skin;                 /* of c, none in a single phase */
   struct field *band;                /* leaves whose momentum rides with c */
   struct field *u_old[DIM];          /* u^n while u is being advanced */
-  struct field *u_half;              /* u_f^{n+1/2} */
-  struct scratch scratch;            /* for stages */
+  struct field *u_half;   /* u_f^{n+1/2}, then u_f^n; scratch within a step */
+  struct scratch scratch; /* for stages */
   double *c_before; /* c while it is synchronised (fractions.h), else NULL */
 
   /* For output, on demand (closure_fields.h) */
