@@ -83,7 +83,7 @@ static inline void carried_adapt(struct carried *c, double dt) {
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int f = 0; f < NFACE && vof_is_cut(sim->c->v[i]); f++) {
       const double u = fabs(sim->u_f->v[sim->grid.mesh->cell_face[i][f]]);
-      travel = fmax(travel, u * dt / sim->grid.mesh->h[i]);
+      travel = larger(travel, u * dt / sim->grid.mesh->h[i]);
     }
   }
   sim->travel += travel;

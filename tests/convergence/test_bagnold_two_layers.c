@@ -108,7 +108,7 @@ static struct result measure(const struct layers *layers, int level) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       const double u = exact(layers, mesh->x[i][1]);
       error[i] = sim->u[0]->v[i] - u;
-      most = fmax(most, u);
+      most = larger(most, u);
     }
     result.l2 = norms_of(mesh, error).l2 / most;
     result.across = norms_of(mesh, sim->u[1]->v).most;

@@ -40,7 +40,7 @@ static int iterations(int base, int level, double contrast, double lambda) {
       const double *x = mesh->x[i];
       rhs[d][i] = sin(3 * x[d] + 1) * cos(5 * x[(d + 1) % DIM]);
     }
-    most = fmax(most, largest_size(mesh, rhs[d]));
+    most = larger(most, largest_size(mesh, rhs[d]));
   }
   const struct solve_stats stats = viscous_solve(
       mesh, hierarchy, rho, eta_f, NULL, ldexp(1, -2 * level) / lambda, rhs, bc,

@@ -35,7 +35,7 @@ static double mixed_behind_front(const struct two_phase *sim) {
       const double c = sim->c->v[i], x = mesh->x[i][0];
       if (mesh->x[i][DIM - 1] > mesh->h[i] || c < kMixed) continue;
       h = fmin(h, mesh->h[i]);
-      front = fmax(front, x);
+      front = larger(front, x);
       if (c < 1 - kMixed) first = fmin(first, x);
     }
   }
@@ -67,8 +67,8 @@ static struct drop run_drop(int level, double gap, double fall) {
       drop.behind = mixed_behind_front(sim);
     }
     const double energy = energy_of(sim, &d);
-    drop.gain = fmax(drop.gain, energy / first - 1);
-    drop.rise = fmax(drop.rise, (energy - least) / first);
+    drop.gain = larger(drop.gain, energy / first - 1);
+    drop.rise = larger(drop.rise, (energy - least) / first);
     least = fmin(least, energy);
   }
   drop.front = d.front, drop.height = d.height;

@@ -77,7 +77,7 @@ static bool balance_forces(struct flow *s) {
       s->rhs[d][i] = dt * force(mesh->x[i]);
     }
     remove_mean(mesh, s->rhs[d]);
-    most = fmax(most, largest_size(mesh, s->rhs[d]));
+    most = larger(most, largest_size(mesh, s->rhs[d]));
   }
   field_arrays(s->u, u);
   return viscous_solve(mesh, s->hierarchy, s->rho, s->eta_f, NULL, dt, s->rhs,

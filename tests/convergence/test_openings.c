@@ -42,7 +42,7 @@ static double jet_error(double width, int level) {
     if (step_advance(sim, 2 - sim->model.time) != EXIT_DONE) most = NAN;
     const double time = sim->model.time - 0.5 * sim->model.dt; /* of c */
     const double volume = integral(sim->grid.mesh, sim->c->v);
-    most = fmax(most, fabs(volume / (width * 0.5 * time) - 1));
+    most = larger(most, fabs(volume / (width * 0.5 * time) - 1));
   }
   two_phase_destroy(sim);
   case_destroy(file);

@@ -96,7 +96,7 @@ static struct norms solve(const void *context, enum grid_kind grid, int level) {
   system_start(&s, problem, grid, level);
   for (int d = 0; d < DIM; d++) {
     bc[d] = s.side[d];
-    scale = fmax(scale, largest_size(s.mesh, s.rhs[d]));
+    scale = larger(scale, largest_size(s.mesh, s.rhs[d]));
   }
   const struct solve_stats stats =
       viscous_solve(s.mesh, s.hierarchy, s.rho, s.eta_f, NULL, kDt, s.rhs, bc,

@@ -136,7 +136,7 @@ static inline double courant_dt(const struct mesh *mesh, const double *u_f,
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double sum = 0;
     for (int f = 0; f < NFACE; f++) sum += fabs(u_f[mesh->cell_face[i][f]]);
-    rate = fmax(rate, 0.5 * sum / mesh->h[i]);
+    rate = larger(rate, 0.5 * sum / mesh->h[i]);
   }
   return cfl / mesh_max(mesh, rate);
 }

@@ -70,7 +70,7 @@ static inline double below(void *context, const double x[3]) {
 static inline double column(void *context, const double x[3]) {
   (void)context;
   double outside = x[0];
-  for (int d = 1; d < DIM; d++) outside = fmax(outside, x[d]);
+  for (int d = 1; d < DIM; d++) outside = larger(outside, x[d]);
   return 0.4 - outside;
 }
 

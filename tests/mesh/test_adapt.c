@@ -40,7 +40,7 @@ START_TEST(the_surface_lies_in_a_band_of_the_finest_level) {
     if (fabs(distance(mesh, i)) < WIDTH * h) {
       wide = wide && mesh->level[i] == FINE;
     }
-    coarsest = fmax(coarsest, mesh->h[i]);
+    coarsest = larger(coarsest, mesh->h[i]);
   }
   coarsest = mesh_max(mesh, coarsest);
   band = all_ranks(band), wide = all_ranks(wide);
@@ -216,7 +216,7 @@ static double near_a_point(void *context, const double x[3]) {
   const double h = 1.0 / (1 << COARSE);
   double away = 0;
   (void)context;
-  for (int d = 0; d < DIM; d++) away = fmax(away, fabs(x[d] - 0.45));
+  for (int d = 0; d < DIM; d++) away = larger(away, fabs(x[d] - 0.45));
   return away < 0.5 * h ? FINE : 0;
 }
 
@@ -243,7 +243,7 @@ START_TEST(the_cap_is_respected) {
       if (!two_phase_adapt(sim)) break;
       const int64_t leaves = forest_nleaves_global(sim->grid.forest);
       if (part < 0) size[n++] = leaves;
-      over = fmax(over, (double)leaves / (double)params.max_cells);
+      over = larger(over, (double)leaves / (double)params.max_cells);
     }
     two_phase_destroy(sim);
   }

@@ -108,11 +108,11 @@ START_TEST(a_uniform_velocity_is_kept_across_levels) {
   flow_predict(b, &w, 0.5 / 32, u_f);
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < b->mesh->nleaves; i++) {
-      most = fmax(most, fabs(w.out[d]->v[i]));
+      most = larger(most, fabs(w.out[d]->v[i]));
     }
     for (int32_t f = b->mesh->face_begin[d]; f < b->mesh->face_begin[d + 1];
          f++) {
-      wrong = fmax(wrong, fabs(u_f[f] - kDrift[d]));
+      wrong = larger(wrong, fabs(u_f[f] - kDrift[d]));
     }
   }
   ck_assert_double_le(mesh_max(b->mesh, most), 1e-14);
@@ -141,9 +141,9 @@ START_TEST(prediction_of_a_linear_profile_is_exact) {
         const double exact = linear(d, x) - 0.5 * dt * linear_inertia(d, x);
         const double error = fabs(u_f[f] - exact);
         if (k == 0) {
-          still = fmax(still, error);
+          still = larger(still, error);
         } else {
-          moved = fmax(moved, error / (dt * b->mesh->face_h[f]));
+          moved = larger(moved, error / (dt * b->mesh->face_h[f]));
         }
       }
     }
@@ -168,7 +168,7 @@ START_TEST(a_linear_velocity_is_advected_exactly_in_the_limit) {
     for (int d = 0; d < DIM; d++) x[d] = b->mesh->x[i][d];
     for (int d = 0; d < DIM; d++) {
       const double rate = -w.out[d]->v[i] / dt;
-      most = fmax(most, fabs(rate - linear_inertia(d, x)));
+      most = larger(most, fabs(rate - linear_inertia(d, x)));
     }
   }
   /* dt |A|^2 |u|, and round-off of 1e-15 / h */
@@ -214,7 +214,7 @@ static void steady_error(int base, int level, double *most, double *mean) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
       const double e = fabs(w.out[d]->v[i] / dt + w.g[d]->v[i]);
-      *most = fmax(*most, e);
+      *most = larger(*most, e);
       error[i] += e;
     }
   }
@@ -245,7 +245,7 @@ START_TEST(momentum_is_conserved_across_levels) {
   flow_advect(b, &w, 0.2 / 32);
   double most = 0;
   for (int d = 0; d < DIM; d++) {
-    most = fmax(most, fabs(integral(b->mesh, w.out[d]->v)));
+    most = larger(most, fabs(integral(b->mesh, w.out[d]->v)));
   }
   ck_assert_double_le(most, 1e-15); /* of changes of 0.05 */
   bench_destroy(b);
@@ -256,7 +256,7 @@ END_TEST
  * schemes leave it between 0 and 1, the plain one does not. */
 static double block(int d, const double x[3]) {
   double outside = 0;
-  for (int e = 0; e < DIM; e++) outside = fmax(outside, fabs(x[e] - 0.5));
+  for (int e = 0; e < DIM; e++) outside = larger(outside, fabs(x[e] - 0.5));
   return d == 0 && outside < 0.25;
 }
 
@@ -276,7 +276,7 @@ START_TEST(limited_slopes_make_no_new_extrema) {
     flow_advect(b, &w, dt);
     memcpy(w.u[0]->v, w.out[0]->v, bytes);
     for (int32_t i = 0; i < b->mesh->nleaves; i++) {
-      most = fmax(most, fmax(-w.u[0]->v[i], w.u[0]->v[i] - 1));
+      most = larger(most, fmax(-w.u[0]->v[i], w.u[0]->v[i] - 1));
     }
   }
   most = mesh_max(b->mesh, most);

@@ -23,7 +23,7 @@ static double cleaned(int trees, bool periodic, bool with_opening) {
   clean_face_velocity(clean, mesh, open, u_f);
   double most = 0, h = 1;
   for (int32_t i = 0; i < mesh->nleaves; i++) h = fmin(h, mesh->h[i]);
-  for (int32_t f = 0; f < mesh->nfaces; f++) most = fmax(most, fabs(u_f[f]));
+  for (int32_t f = 0; f < mesh->nfaces; f++) most = larger(most, fabs(u_f[f]));
   double div = clean_divergence(mesh, u_f) * -mesh_max(mesh, -h);
   most = mesh_max(mesh, most);
   mem_free(u_f);
@@ -62,7 +62,7 @@ START_TEST(divergence_becomes_the_source) {
     for (int f = 0; f < NFACE; f++) {
       net += (f & 1 ? 1 : -1) * u_f[mesh->cell_face[i][f]];
     }
-    most = fmax(most, fabs(net - source[i] * mesh->h[i]));
+    most = larger(most, fabs(net - source[i] * mesh->h[i]));
   }
   most = mesh_max(mesh, most);
   mem_free(source);
@@ -89,7 +89,7 @@ START_TEST(a_solenoidal_field_is_left_alone) {
   double most = 0;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      most = fmax(most, fabs(u_f[f] - 0.3 - d));
+      most = larger(most, fabs(u_f[f] - 0.3 - d));
     }
   }
   ck_assert_double_le(mesh_max(mesh, most), 1e-14);

@@ -55,11 +55,11 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
     for (int k = 0; k < n && !grains; k++) gas += fabs(sim->known[k]->v[i]);
     if (!grains || !is_inside(sim, i)) continue;
     cells++;
-    wrong_rate = fmax(wrong_rate, fabs(sim->shear_rate->v[i] / RATE - 1));
+    wrong_rate = larger(wrong_rate, fabs(sim->shear_rate->v[i] / RATE - 1));
     for (int k = 0; k < n; k++) {
       double exact;
       rheology_output(&params.grains.rheology, k, 1, &RATE, &PRESSURE, &exact);
-      wrong[k] = fmax(wrong[k], fabs(sim->known[k]->v[i] - exact));
+      wrong[k] = larger(wrong[k], fabs(sim->known[k]->v[i] - exact));
     }
   }
   closure_fields_release(sim);

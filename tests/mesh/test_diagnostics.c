@@ -382,12 +382,12 @@ START_TEST(layers_add_up_to_the_heap) {
   for (int i = 0; i < d.outline.n[0] * d.outline.n[1]; i++) {
     const double height = d.outline.height[i];
     for (int k = 0; k < 2; k++)
-      apart[k] = fmax(apart[k], fabs(d.layer[k][i] - height));
+      apart[k] = larger(apart[k], fabs(d.layer[k][i] - height));
     gap += fabs(d.layer[2][i] + d.layer[3][i] - height);
     volume += height;
   }
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
-    moved = fmax(moved, fabs(sim->tracer[2]->v[i] - before[i]));
+    moved = larger(moved, fabs(sim->tracer[2]->v[i] - before[i]));
   moved = mesh_max(sim->grid.mesh, moved);
   const double front = d.front, row = d.outline.spacing / 0.4;
   diagnostics_free(&d);

@@ -15,7 +15,7 @@ static double spot(void *context, const double x[3]) {
   const double *depth = context;
   double away = 0;
   for (int d = 0; d < DIM; d++) {
-    away = fmax(away, fabs(x[d] - (0.375 + 0.5 / (1 << FINE))));
+    away = larger(away, fabs(x[d] - (0.375 + 0.5 / (1 << FINE))));
   }
   return away < 0.4 / (1 << FINE) ? *depth : -*depth;
 }
@@ -34,7 +34,7 @@ START_TEST(criterion_of_position_misses_nothing) {
     double x[3] = {0};
     for (int d = 0; d < DIM; d++) x[d] = sim->grid.mesh->x[i][d];
     if (spot(depth, x) > 0 && sim->grid.mesh->level[i] == FINE) found = 1;
-    coarsest = fmax(coarsest, sim->grid.mesh->h[i]);
+    coarsest = larger(coarsest, sim->grid.mesh->h[i]);
   }
   found = mesh_max(sim->grid.mesh, found),
   coarsest = mesh_max(sim->grid.mesh, coarsest);

@@ -30,7 +30,7 @@ static double linear_error(const struct mesh *mesh) {
       for (int d = 0; d < DIM; d++) x[d] = mesh->x[i][d] + o[d] * mesh->h[i];
       const int32_t node = mesh->stencil[i][s];
       if (node >= mesh->begin_boundary) continue;
-      error = fmax(error, fabs(v[node] - linear(x)));
+      error = larger(error, fabs(v[node] - linear(x)));
     }
   }
   mem_free(v);

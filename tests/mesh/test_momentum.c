@@ -94,9 +94,9 @@ static void carry_ball(double ratio, int base, double *change, double *lost) {
     rider_step(b, &r, step, dt);
     for (int d = 0; d < DIM; d++) {
       for (int32_t i = 0; i < b->mesh->nleaves; i++) {
-        *change = fmax(*change, fabs(r.u[d]->v[i] - kDrift[d]));
+        *change = larger(*change, fabs(r.u[d]->v[i] - kDrift[d]));
       }
-      *lost = fmax(*lost, fabs(momentum_of(b, &r, d) - before[d]) / mass);
+      *lost = larger(*lost, fabs(momentum_of(b, &r, d) - before[d]) / mass);
     }
   }
   *change = mesh_max(b->mesh, *change);
@@ -148,7 +148,7 @@ START_TEST(a_dense_square_moves_unchanged_through_light_gas) {
     wrong += fabs(c - exact) * mesh_volume(b->mesh, i);
     if (c < 0.5) continue;
     for (int d = 0; d < DIM; d++) {
-      slow = fmax(slow, fabs(r.u[d]->v[i] - kDrift[d]));
+      slow = larger(slow, fabs(r.u[d]->v[i] - kDrift[d]));
     }
   }
   slow = mesh_max(b->mesh, slow);
@@ -184,7 +184,7 @@ START_TEST(sweeps_make_no_new_extremes) {
     rider_step(b, &r, step, dt);
     for (int d = 0; d < DIM; d++) {
       for (int32_t i = 0; i < b->mesh->nleaves; i++) {
-        most = fmax(most, fabs(r.u[d]->v[i] - kDrift[d]));
+        most = larger(most, fabs(r.u[d]->v[i] - kDrift[d]));
       }
     }
   }
@@ -212,7 +212,7 @@ START_TEST(momentum_that_rides_is_conserved) {
   for (int d = 0; d < DIM; d++) before[d] = momentum_of(b, &r, d);
   for (int step = 0; step < 10; step++) rider_step(b, &r, step, dt);
   for (int d = 0; d < DIM; d++) {
-    lost = fmax(lost, fabs(momentum_of(b, &r, d) - before[d]) / mass);
+    lost = larger(lost, fabs(momentum_of(b, &r, d) - before[d]) / mass);
   }
   bench_destroy(b);
   ck_assert_double_le(lost, 1e-14);
@@ -232,7 +232,7 @@ START_TEST(the_band_is_the_surface_and_a_ring_around_it) {
   for (int32_t i = 0; i < b->mesh->nleaves; i++) {
     double from_centre = 0;
     for (int d = 0; d < DIM; d++) {
-      from_centre = fmax(from_centre, fabs(b->mesh->x[i][d] - 0.5));
+      from_centre = larger(from_centre, fabs(b->mesh->x[i][d] - 0.5));
     }
     const bool near = fabs(from_centre - 0.25) < rings * b->mesh->h[i];
     good = good && (r.band->v[i] > 0) == near;

@@ -185,7 +185,7 @@ START_TEST(narrow_outlet_is_on_the_finest_level) {
     const int patch = mesh->face_patch[f];
     if (patch < 0 || !sim->grid.open[patch]) continue;
     area += pow(mesh->face_h[f], DIM - 1);
-    coarsest = fmax(coarsest, mesh->face_h[f]);
+    coarsest = larger(coarsest, mesh->face_h[f]);
   }
   area = mesh_sum(mesh, area), coarsest = mesh_max(mesh, coarsest);
   const bool after = sim->grid.pressure_set,
@@ -218,7 +218,7 @@ START_TEST(large_opening_is_fine_at_its_ends) {
     const int patch = mesh->face_patch[f];
     if (patch < FIRST) continue;
     double *most = &coarsest[sim->grid.open[patch]];
-    *most = fmax(*most, mesh->face_h[f]);
+    *most = larger(*most, mesh->face_h[f]);
   }
   for (int k = 0; k < 2; k++) coarsest[k] = mesh_max(mesh, coarsest[k]);
   two_phase_destroy(sim);

@@ -77,10 +77,11 @@ static struct effect percolate(const struct params *params, int calls,
   for (int k = 0; k < calls; k++) {
     percolation_advance(sim, dt);
     sim->model.step++;
-    effect.excess = fmax(effect.excess, vof_excess(sim->grid.mesh, sim->c->v));
+    effect.excess =
+        larger(effect.excess, vof_excess(sim->grid.mesh, sim->c->v));
   }
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    effect.moved = fmax(effect.moved, fabs(sim->c->v[i] - start[i]));
+    effect.moved = larger(effect.moved, fabs(sim->c->v[i] - start[i]));
   }
   effect.excess = mesh_max(sim->grid.mesh, effect.excess);
   effect.moved = mesh_max(sim->grid.mesh, effect.moved);

@@ -93,7 +93,7 @@ START_TEST(flux_of_linear_pressure_is_exact) {
   double *flux = MEM_NEW(double, s.mesh->nfaces_all), error = 0;
   poisson_flux(s.mesh, s.alpha_f, s.p, flux);
   for (int32_t f = 0; f < s.mesh->nfaces; f++) {
-    error = fmax(error, fabs(flux[f] - slope[face_direction(s.mesh, f)]));
+    error = larger(error, fabs(flux[f] - slope[face_direction(s.mesh, f)]));
   }
   error = mesh_max(s.mesh, error);
   /* differences of order one numbers over h = 1/16 */
@@ -148,7 +148,7 @@ static double wave_error(int kind, int base, int level, bool *converged) {
   }
   sum = kind == 1 ? 0 : mesh_sum(s.mesh, sum);
   for (int32_t i = 0; i < s.mesh->nleaves; i++) {
-    error = fmax(error, fabs(s.p[i] - sum - wave(s.mesh->x[i], kind == 1)));
+    error = larger(error, fabs(s.p[i] - sum - wave(s.mesh->x[i], kind == 1)));
   }
   error = mesh_max(s.mesh, error);
   solve_end(&s);

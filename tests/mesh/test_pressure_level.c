@@ -33,7 +33,7 @@ static double error_of_weight(const struct two_phase *sim, double level) {
     const double z = sim->grid.mesh->x[i][DIM - 1], c = sim->c->v[i];
     const double gas = 1e-3 * (1 - fmax(z, height));
     if (c > 0 && c < 1) continue;
-    most = fmax(most, fabs(sim->p->v[i] - level - gas - fmax(height - z, 0)));
+    most = larger(most, fabs(sim->p->v[i] - level - gas - fmax(height - z, 0)));
   }
   return mesh_max(sim->grid.mesh, most);
 }

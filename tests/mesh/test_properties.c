@@ -53,7 +53,7 @@ START_TEST(density_is_linear_in_the_fraction) {
   mesh_fill_ghosts(mesh, 1, &rho);
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    most = fmax(most, fabs(rho[i] - (1 + 999 * c->v[i])));
+    most = larger(most, fabs(rho[i] - (1 + 999 * c->v[i])));
   }
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
@@ -64,7 +64,7 @@ START_TEST(density_is_linear_in_the_fraction) {
       if (patch == NFACE - 1) { /* no gradient of c at the open side */
         exact = 1 / (1 + 999 * c->v[mesh->face_owner[f]]);
       }
-      most = fmax(most, fabs(alpha_f[f] - exact));
+      most = larger(most, fabs(alpha_f[f] - exact));
     }
   }
   ck_assert_double_le(mesh_max(mesh, most), 1e-12); /* of 1000 */
@@ -129,7 +129,7 @@ START_TEST(shear_rate_of_linear_velocities_is_exact) {
         for (int e = 0; e < DIM; e++) middle &= fabs(x[e] - 0.5) < 0.2;
         if (!middle) continue;
       }
-      most = fmax(most, fabs(shear_f[f] - sqrt(squared)));
+      most = larger(most, fabs(shear_f[f] - sqrt(squared)));
       count++;
     }
   }
@@ -197,7 +197,7 @@ START_TEST(face_pressure_is_exact_for_linear_profiles) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       double x[3];
       face_centre(mesh, d, f, x);
-      most = fmax(most, fabs(m.eta[f] - 0.3 * linear(&of, x) / 0.25));
+      most = larger(most, fabs(m.eta[f] - 0.3 * linear(&of, x) / 0.25));
     }
   }
   ck_assert_double_le(mesh_max(mesh, most), 1e-14);
@@ -258,7 +258,7 @@ START_TEST(gravity_on_a_tilted_bed_is_a_gradient) {
         mesh->face_patch[f] >= 0
             ? 0 /* closed */
             : alpha_f[f] * (q->v[node[1]] - q->v[node[0]]) / mesh->face_h[f];
-    most = fmax(most, fabs(gravity_f[f] - exact));
+    most = larger(most, fabs(gravity_f[f] - exact));
   }
   /* planes good to 1e-12, times the ratio of the densities */
   ck_assert_double_le(mesh_max(mesh, most), 1e-9);
@@ -291,7 +291,7 @@ START_TEST(phases_are_mixed_in_series_along_the_line) {
         mixed++;
       }
       const double exact = 1 / (part / 200 + (1 - part) / 0.5);
-      most = fmax(most, fabs(m.eta[f] / exact - 1));
+      most = larger(most, fabs(m.eta[f] / exact - 1));
     }
   }
   ck_assert_double_gt(mesh_sum(mesh, mixed), 10);
@@ -354,7 +354,7 @@ START_TEST(each_phase_takes_its_own_closure) {
     const double exact = c_f == 1  ? yielded
                          : c_f > 0 ? fmin(yielded, 0.5 / (1 - c_f))
                                    : 0.5;
-    most = fmax(most, fabs(m.eta[f] / exact - 1));
+    most = larger(most, fabs(m.eta[f] / exact - 1));
   }
   /* 24 halvings of the range of the grains' rate */
   ck_assert_double_le(mesh_max(mesh, most), 1e-6);

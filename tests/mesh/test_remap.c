@@ -82,12 +82,13 @@ START_TEST(volume_and_momentum_are_conserved) {
   for (int d = 0; d < DIM; d++) before[d] = sim_momentum(sim, d);
   for (int round = 0; round < ROUNDS; round++) {
     change_grid(sim, round, FINEST);
-    drift = fmax(drift, fabs(integral(sim->grid.mesh, sim->c->v) / volume - 1));
+    drift =
+        larger(drift, fabs(integral(sim->grid.mesh, sim->c->v) / volume - 1));
     for (int d = 0; d < DIM; d++) {
-      lost = fmax(lost, fabs(sim_momentum(sim, d) - before[d]) / mass);
+      lost = larger(lost, fabs(sim_momentum(sim, d) - before[d]) / mass);
     }
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-      excess = fmax(excess, fmax(-sim->c->v[i], sim->c->v[i] - 1));
+      excess = larger(excess, fmax(-sim->c->v[i], sim->c->v[i] - 1));
     }
     const int64_t n = forest_nleaves_global(sim->grid.forest);
     if (n < fewest) fewest = n;
@@ -110,7 +111,7 @@ START_TEST(a_linear_pressure_stays_so) {
   for (int round = 0; round < ROUNDS; round++) {
     change_grid(sim, round, FINEST);
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-      most = fmax(most, fabs(sim->p->v[i] - linear(sim->grid.mesh->x[i])));
+      most = larger(most, fabs(sim->p->v[i] - linear(sim->grid.mesh->x[i])));
     }
   }
   most = mesh_max(sim->grid.mesh, most);
@@ -138,7 +139,7 @@ START_TEST(dividing_and_merging_back_changes_nothing) {
   for (int k = 0; k < DIM + 2; k++) {
     after[k] = paint(sim->grid.mesh, field[k]->v, LEVEL);
     for (int32_t i = 0; i < size; i++) {
-      most = fmax(most, fabs(after[k][i] - before[k][i]));
+      most = larger(most, fabs(after[k][i] - before[k][i]));
     }
     mem_free(before[k]);
     mem_free(after[k]);
@@ -164,7 +165,7 @@ START_TEST(children_are_cut_by_the_plane_of_their_parent) {
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double h = sim->grid.mesh->h[i];
     const double depth = (height - sim->grid.mesh->x[i][DIM - 1]) / h + 0.5;
-    most = fmax(most, fabs(sim->c->v[i] - fmin(fmax(depth, 0), 1)));
+    most = larger(most, fabs(sim->c->v[i] - fmin(fmax(depth, 0), 1)));
   }
   most = mesh_max(sim->grid.mesh, most);
   two_phase_destroy(sim);
@@ -180,10 +181,10 @@ START_TEST(face_velocities_stay_solenoidal) {
   struct two_phase *sim = state_new(&params, LEVEL, LEVEL);
   double most = clean_divergence(sim->grid.mesh, sim->u_f->v);
   change_grid(sim, 0, LEVEL + 1);
-  most = fmax(most, clean_divergence(sim->grid.mesh, sim->u_f->v));
+  most = larger(most, clean_divergence(sim->grid.mesh, sim->u_f->v));
   const bool jumps = forest_nleaves_global(sim->grid.forest) > 1 << DIM * LEVEL;
   change_all(sim, -1);
-  most = fmax(most, clean_divergence(sim->grid.mesh, sim->u_f->v));
+  most = larger(most, clean_divergence(sim->grid.mesh, sim->u_f->v));
   two_phase_destroy(sim);
   ck_assert(jumps);
   ck_assert_double_le(most, 1e-15 * (2 << LEVEL) * 4); /* of u / h */
@@ -223,7 +224,7 @@ START_TEST(leaves_that_stay_keep_their_sides) {
     if (side[0][NFACE][i] == 0) continue;
     count++;
     for (int f = 0; f < NFACE; f++) {
-      most = fmax(most, fabs(side[1][f][i] - side[0][f][i]));
+      most = larger(most, fabs(side[1][f][i] - side[0][f][i]));
     }
   }
   for (int f = 0; f <= NFACE; f++) {

@@ -47,7 +47,7 @@ static double plug_speed(const struct two_phase *sim, double *spread) {
   const double mean = integral(sim->grid.mesh, sim->u[0]->v);
   double most = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    most = fmax(most, fabs(sim->u[0]->v[i] - mean));
+    most = larger(most, fabs(sim->u[0]->v[i] - mean));
   }
   *spread = mesh_max(sim->grid.mesh, most);
   return mean;

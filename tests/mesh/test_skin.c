@@ -78,7 +78,7 @@ static double largest_force(struct block *b, const struct skin *skin) {
   viscous_force(b->mesh, b->eta_f, skin, b->u, b->force);
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < b->mesh->nleaves; i++) {
-      most = fmax(most, fabs(b->force[d][i]));
+      most = larger(most, fabs(b->force[d][i]));
     }
   }
   return mesh_max(b->mesh, most);
@@ -90,7 +90,7 @@ static double shear_error(struct block *b, const struct skin *skin,
   double most = 0;
   properties_shear_rate(b->mesh, skin, b->u, b->shear_f);
   for (int32_t f = 0; f < b->mesh->nfaces; f++) {
-    if (b->eta_f[f] > 0) most = fmax(most, fabs(b->shear_f[f] - exact));
+    if (b->eta_f[f] > 0) most = larger(most, fabs(b->shear_f[f] - exact));
   }
   return mesh_max(b->mesh, most);
 }

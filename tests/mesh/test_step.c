@@ -87,7 +87,7 @@ END_TEST
 static double block(void *context, const double x[3]) {
   double outside = 0;
   (void)context;
-  for (int d = 0; d < DIM; d++) outside = fmax(outside, fabs(x[d] - 0.5));
+  for (int d = 0; d < DIM; d++) outside = larger(outside, fabs(x[d] - 0.5));
   return 0.25 - outside;
 }
 
@@ -109,7 +109,7 @@ START_TEST(a_dense_block_moves_on_through_light_gas) {
   const bool done = advance(sim, 3, 1);
   double fastest = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    if (sim->c->v[i] > 0.5) fastest = fmax(fastest, fabs(sim->u[0]->v[i]));
+    if (sim->c->v[i] > 0.5) fastest = larger(fastest, fabs(sim->u[0]->v[i]));
   }
   fastest = mesh_max(sim->grid.mesh, fastest);
   two_phase_destroy(sim);
@@ -141,7 +141,7 @@ START_TEST(cut_leaves_start_with_the_momentum_of_their_grains) {
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double c = sim->c->v[i], rho = params.gas.density;
     const double momentum = (rho + (1 - rho) * c) * sim->u[0]->v[i];
-    most = fmax(most, fabs(momentum - c));
+    most = larger(most, fabs(momentum - c));
   }
   most = mesh_max(sim->grid.mesh, most);
   two_phase_destroy(sim);
@@ -166,8 +166,9 @@ START_TEST(a_collapse_keeps_its_volume) {
   bool done = true, adapted = false;
   for (int k = 0; k < 60 && done; k++) {
     done = step_advance(sim, 1) == EXIT_DONE;
-    drift = fmax(drift, fabs(integral(sim->grid.mesh, sim->c->v) / volume - 1));
-    excess = fmax(excess, vof_excess(sim->grid.mesh, sim->c->v));
+    drift =
+        larger(drift, fabs(integral(sim->grid.mesh, sim->c->v) / volume - 1));
+    excess = larger(excess, vof_excess(sim->grid.mesh, sim->c->v));
     adapted =
         adapted || (double)forest_nleaves_global(sim->grid.forest) != cells;
   }
@@ -211,7 +212,7 @@ START_TEST(sweeps_that_overfill_are_repeated_in_parts) {
   const double before = integral(sim->grid.mesh, sim->c->v);
   double rate = 0;
   for (int32_t f = 0; f < sim->grid.mesh->nfaces; f++) {
-    rate = fmax(rate, fabs(sim->u_f->v[f]) / sim->grid.mesh->face_h[f]);
+    rate = larger(rate, fabs(sim->u_f->v[f]) / sim->grid.mesh->face_h[f]);
   }
   fields_save(&sim->grid.fields, sim->grid.mesh);
   rate = mesh_max(sim->grid.mesh, rate);
@@ -271,7 +272,7 @@ START_TEST(the_answer_does_not_depend_on_ranks) {
     two_phase_destroy(sim);
   }
   for (int k = 0; k < NNUMBERS; k++) {
-    most = fmax(most, fabs(out[1][k] - out[0][k]));
+    most = larger(most, fabs(out[1][k] - out[0][k]));
   }
   most = all_ranks(done) ? most : INFINITY;
   ck_assert(all_ranks(most <= 1e-9));
@@ -318,7 +319,7 @@ static double fall(enum look look, double out[NNUMBERS]) {
 START_TEST(looks_planes_made_anew_and_failures_change_nothing) {
   double out[NLOOKS][NNUMBERS], divergence = 0;
   for (int k = 0; k < NLOOKS; k++) {
-    divergence = fmax(divergence, fall((enum look)k, out[k]));
+    divergence = larger(divergence, fall((enum look)k, out[k]));
   }
   ck_assert_double_le(divergence, 1e-13);
   for (int k = 1; k < NLOOKS; k++) {
@@ -391,7 +392,7 @@ static double decay_error(int level, double theta, double *shape) {
       const double start = taylor_green(&kAxis[d], x);
       energy[0] += start * start;
       energy[1] += sim->u[d]->v[i] * sim->u[d]->v[i];
-      *shape = fmax(*shape, fabs(sim->u[d]->v[i] - exact * start));
+      *shape = larger(*shape, fabs(sim->u[d]->v[i] - exact * start));
     }
   }
   *shape = mesh_max(sim->grid.mesh, *shape);
@@ -431,7 +432,7 @@ START_TEST(momentum_is_conserved_in_a_periodic_box) {
   for (int d = 0; d < DIM; d++) before[d] = sim_momentum(sim, d);
   const bool done = advance(sim, 10, 1);
   for (int d = 0; d < DIM; d++) {
-    most = fmax(most, fabs(sim_momentum(sim, d) - before[d]));
+    most = larger(most, fabs(sim_momentum(sim, d) - before[d]));
   }
   const double tolerance = params.tolerance_viscous;
   two_phase_destroy(sim);
@@ -457,7 +458,7 @@ START_TEST(a_stiff_fluid_comes_to_rest_in_its_mean_flow) {
   bool done = true;
   for (int k = 0; k < 60 && done; k++) {
     done = advance(sim, 1, 1);
-    most = fmax(most, largest(sim, sim->u));
+    most = larger(most, largest(sim, sim->u));
   }
   two_phase_destroy(sim);
   ck_assert(done);
@@ -488,7 +489,7 @@ START_TEST(a_dense_square_drifts_with_its_gas) {
   for (int d = 0; d < DIM; d++) {
     const double exact = d == 0 ? 1 : d == 1 ? 0.5 : 0;
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-      most = fmax(most, fabs(sim->u[d]->v[i] - exact));
+      most = larger(most, fabs(sim->u[d]->v[i] - exact));
     }
   }
   most = mesh_max(sim->grid.mesh, most);
@@ -676,7 +677,7 @@ START_TEST(a_heap_less_steep_than_friction_rests) {
     done = step_advance(sim, 0.02) == EXIT_DONE;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int d = 0; d < DIM && sim->c->v[i] > 0.5; d++) {
-      fastest = fmax(fastest, fabs(sim->u[d]->v[i]));
+      fastest = larger(fastest, fabs(sim->u[d]->v[i]));
     }
   }
   fastest = mesh_max(sim->grid.mesh, fastest);
@@ -768,7 +769,7 @@ START_TEST(a_solve_that_fails_is_told) {
   const enum solve_status solve = sim->pressure.status;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
-      moved = fmax(moved, fabs(sim->u[d]->v[i] - start * i));
+      moved = larger(moved, fabs(sim->u[d]->v[i] - start * i));
     }
   }
   moved = mesh_max(sim->grid.mesh, moved);

@@ -38,7 +38,7 @@ START_TEST(a_fall_from_rest_keeps_to_the_bound) {
   struct two_phase *sim = two_phase_new(&params);
   for (int k = 0; k < 6 && done; k++) {
     done = step_advance(sim, 1e6) == EXIT_DONE;
-    most = fmax(most, sim->model.dt * time_step_rate(sim));
+    most = larger(most, sim->model.dt * time_step_rate(sim));
   }
   const double time = sim->model.time, speed = largest(sim, sim->u);
   two_phase_destroy(sim);
@@ -110,11 +110,11 @@ START_TEST(c_is_in_0_1_however_long_it_has_lagged) {
   const double excess = mesh_max(mesh, vof_excess(mesh, sim->c->v));
   double moved = 0, left = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    moved = fmax(moved, fabs(sim->c->v[i] - c[i]));
+    moved = larger(moved, fabs(sim->c->v[i] - c[i]));
   }
   if (_i & 1) fractions_desynchronise(sim);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    left = fmax(left, fabs(sim->c->v[i] - c[i]));
+    left = larger(left, fabs(sim->c->v[i] - c[i]));
   }
   moved = mesh_max(mesh, moved), left = mesh_max(mesh, left);
   mem_free(c);

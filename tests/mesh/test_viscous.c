@@ -81,7 +81,7 @@ static double inner_force(struct flow *s) {
       inside = inside && fabs(mesh->x[i][d] - 0.5) < 0.24;
     }
     if (!inside) continue;
-    for (int d = 0; d < DIM; d++) most = fmax(most, fabs(s->rhs[d][i]));
+    for (int d = 0; d < DIM; d++) most = larger(most, fabs(s->rhs[d][i]));
   }
   return mesh_max(mesh, most);
 }
@@ -287,7 +287,7 @@ static double true_residual(struct flow *s) {
   viscous_force(s->mesh, s->eta_f, NULL, s->u, force);
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < s->mesh->nleaves; i++) {
-      most = fmax(most, fabs(s->rhs[d][i] - s->u[d][i] + force[d][i]));
+      most = larger(most, fabs(s->rhs[d][i] - s->u[d][i] + force[d][i]));
     }
     mem_free(force[d]);
   }
@@ -385,7 +385,7 @@ START_TEST(robin_walls_slip) {
   double error = 0;
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     const double exact = (s->mesh->x[i][1] + 0.3) / 1.3;
-    error = fmax(error, fabs(s->u[0][i] - exact));
+    error = larger(error, fabs(s->u[0][i] - exact));
   }
   error = mesh_max(s->mesh, error);
   ck_assert_int_eq(stats.status, SOLVE_CONVERGED);

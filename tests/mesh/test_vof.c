@@ -23,7 +23,7 @@ static double volume_drift(struct bench *b) {
   double most = 0;
   for (int step = 0; step < 30; step++) {
     transport_step(b, &t, step, dt);
-    most = fmax(most, fabs(integral(b->mesh, t.c->v) - before));
+    most = larger(most, fabs(integral(b->mesh, t.c->v) - before));
   }
   return most / before;
 }
@@ -54,7 +54,7 @@ START_TEST(fractions_stay_between_0_and_1) {
     }
     clean_face_velocity(b->clean, b->mesh, b->open, t.u_f->v);
     transport_step(b, &t, step, courant_dt(b->mesh, t.u_f->v, 0.5));
-    most = fmax(most, transport_excess(b, &t));
+    most = larger(most, transport_excess(b, &t));
   }
   /* VOF_EMPTY: a leaf this close to full is taken as full */
   ck_assert_double_le(most, 1e-12);
@@ -126,7 +126,7 @@ static void translate_plane(struct bench *b, const double n[3], double *most,
       inside = inside && fabs(b->mesh->x[i][d] - 0.5) < 0.19;
     }
     if (!inside) continue;
-    *most = fmax(*most, error);
+    *most = larger(*most, error);
     if (vof_is_cut(exact->v[i])) count++, sum += error;
   }
   *most = mesh_max(b->mesh, *most);
@@ -203,7 +203,7 @@ START_TEST(a_mirrored_flow_gives_the_mirror_image) {
   double *plain = run_mirrored(-1), *mirrored = run_mirrored(_i), most = 0;
   for (int32_t k = 0; k < size; k++) {
     const int32_t at = k / stride % n, other = (n - at) % n;
-    most = fmax(most, fabs(plain[k] - mirrored[k + (other - at) * stride]));
+    most = larger(most, fabs(plain[k] - mirrored[k + (other - at) * stride]));
   }
   /* round-off of 45 sweeps; an asymmetry would be seen at 1e-3 */
   ck_assert_double_le(most, 1e-12);
@@ -237,7 +237,7 @@ START_TEST(a_divided_side_passes_what_the_coarse_plane_holds) {
       }
       lo[d] = 0.5 - kDrift[d] * dt / mesh->h[i];
       const double held = plane_box_volume(n, t.plane->v[i], lo, hi);
-      most = fmax(most, fabs(t.flux->v[face] - kDrift[d] * held));
+      most = larger(most, fabs(t.flux->v[face] - kDrift[d] * held));
       count++;
     }
   }
