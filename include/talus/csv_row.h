@@ -12,21 +12,28 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* A row taken apart; {0} before the first, freed by csv_row_free. */
+/* A text that grows. */
+struct csv_text {
+  char *v;
+  size_t n, room;
+};
+
+/* A row that has been read, or is being written; {0} before the first, freed by
+ * csv_row_free. */
 struct csv_row {
-  int n;     /* cells */
-  bool ends; /* with an end of line: it was not cut short */
-  char *text;
-  size_t length, room;
-  size_t *begin; /* [n], of each cell in text */
-  int most;
+  int n;                /* cells */
+  bool ends;            /* with an end of line: it was not cut short */
+  struct csv_text line; /* as it stands in the file, end of line and all */
+  struct csv_text cells;
+  size_t *begin; /* [n], of each cell in `cells` */
+  int room;
 };
 
 /*
  * Reads the next row. Not collective.
  *   f    open to read; fmemopen makes one of a text
  *   row  in/out: replaced
- * returns  false at the end of the file
+ * returns  false at the end of the file, where the row is empty
  */
 bool csv_row_read(FILE *f, struct csv_row *row);
 
@@ -34,10 +41,19 @@ bool csv_row_read(FILE *f, struct csv_row *row);
  * It lasts until the next csv_row_read. */
 const char *csv_row_cell(const struct csv_row *row, int k);
 
-/* Frees what csv_row_read has allocated. */
-void csv_row_free(struct csv_row *row);
+/* Reads the number that cell k is, from its first to its last character;
+ * returns false, *value as it was, if it is none. */
+bool csv_row_number(const struct csv_row *row, int k, double *value);
 
-/* Writes a text as one cell, in quotes where it needs them. */
-void csv_row_write_cell(FILE *f, const char *text);
+/* Adds a cell to the row that is being written; the first one after the end of
+ * a row begins the next. */
+void csv_row_add(struct csv_row *row, const char *text);
+
+/* Ends the row, whose `line` lasts until the next csv_row_add, and writes it.
+ * Not collective. */
+void csv_row_write(struct csv_row *row, FILE *f);
+
+/* Frees what the functions above have allocated. */
+void csv_row_free(struct csv_row *row);
 
 #endif

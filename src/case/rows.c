@@ -85,14 +85,15 @@ void case_print(const struct case_file *file, FILE *f) {
 }
 
 void case_write_parameters(const struct case_file *file, FILE *f) {
+  struct csv_row line = {0};
   fputs("key,value,unit,origin\n", f);
   for (int i = 0; i < file->nrows; i++) {
     const struct row *row = &file->rows[i];
-    const char *const fields[] = {row->key, row->value, row->unit, row->origin};
-    for (int k = 0; k < 4; k++) {
-      if (k > 0) putc(',', f);
-      csv_row_write_cell(f, fields[k]);
-    }
-    putc('\n', f);
+    csv_row_add(&line, row->key);
+    csv_row_add(&line, row->value);
+    csv_row_add(&line, row->unit);
+    csv_row_add(&line, row->origin);
+    csv_row_write(&line, f);
   }
+  csv_row_free(&line);
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "talus/command_line.h"
+#include "talus/csv_row.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 #include "talus/rheology.h"
@@ -155,17 +156,27 @@ static double *quantity(const struct rheology *rheology, const char *name,
   return NULL;
 }
 
+/* Adds entry i of a column to a row; nothing if there is no such column. */
+static void add_number(struct csv_row *row, const double *column, int i) {
+  char text[32] = "";
+  if (column != NULL) snprintf(text, sizeof text, "%.10g", column[i]);
+  csv_row_add(row, text);
+}
+
 static void print_csv(const struct curve *curve) {
+  struct csv_row row = {0};
   printf("I,shear_rate,eta,mu,nu,state\n");
   for (int i = 0; i < curve->n; i++) {
-    const double p = curve->p[i];
-    printf("%.10g,%.10g,%.10g,%.10g,", curve->I[i], curve->rate[i],
-           curve->eta[i], curve->eta[i] * curve->rate[i] / p);
-    if (curve->nu != NULL) printf("%.10g", curve->nu[i]);
-    printf(",");
-    if (curve->state != NULL) printf("%g", curve->state[i]);
-    printf("\n");
+    const double mu = curve->eta[i] * curve->rate[i] / curve->p[i];
+    add_number(&row, curve->I, i);
+    add_number(&row, curve->rate, i);
+    add_number(&row, curve->eta, i);
+    add_number(&row, &mu, 0);
+    add_number(&row, curve->nu, i);
+    add_number(&row, curve->state, i);
+    csv_row_write(&row, stdout);
   }
+  csv_row_free(&row);
 }
 
 static void print_columns(const struct curve *curve) {

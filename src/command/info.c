@@ -63,11 +63,12 @@ static int info_csv(const char *path) {
   if (!read_table(path, &table))
     USER_ERROR("%s is no csv file of talus: it has no header line", path);
   printf("%s: %ld rows of ", path, table.nrows);
-  for (int k = 0; k < table.header.n; k++) {
-    if (k > 0) putchar(',');
-    csv_row_write_cell(stdout, csv_row_cell(&table.header, k));
-  }
-  printf("\n%s", table.nrows > 0 ? "last row\n" : "");
+  struct csv_row names = {0};
+  for (int k = 0; k < table.header.n; k++)
+    csv_row_add(&names, csv_row_cell(&table.header, k));
+  csv_row_write(&names, stdout);
+  csv_row_free(&names);
+  printf("%s", table.nrows > 0 ? "last row\n" : "");
   print_last(&table);
   free_table(&table);
   return EXIT_DONE;

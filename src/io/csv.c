@@ -19,8 +19,7 @@ struct csv {
   FILE *f;              /* rank 0 */
   char *path;           /* owned */
   struct csv_mark mark; /* of the rows written, on rank 0 */
-  char *row;            /* owned; [length] of the row under way */
-  size_t length, room;
+  struct csv_row row;   /* under way */
 };
 
 /* Judges a file that is to be continued, on rank 0; returns 0, an errno, -1
@@ -133,21 +132,13 @@ void csv_close(struct csv *csv) {
     output_flush(csv->f, csv->path);
     fclose(csv->f);
   }
-  mem_free(csv->row);
+  csv_row_free(&csv->row);
   mem_free(csv->path);
   mem_free(csv);
 }
 
 static void write_cell(struct csv *csv, const char *text) {
-  const size_t n = strlen(text);
-  if (csv->f == NULL) return;
-  if (csv->length + n + 2 > csv->room) {
-    csv->room = 2 * csv->room + n + 256;
-    csv->row = mem_resize(csv->row, csv->room, 1);
-  }
-  if (csv->length > 0) csv->row[csv->length++] = ',';
-  memcpy(csv->row + csv->length, text, n);
-  csv->length += n;
+  if (csv->f != NULL) csv_row_add(&csv->row, text);
 }
 
 void csv_real(struct csv *csv, double value) {
@@ -179,10 +170,8 @@ static void warn_if_gone(const struct csv *csv) {
 
 void csv_end_row(struct csv *csv) {
   if (csv->f == NULL) return;
-  csv->row[csv->length++] = '\n';
-  csv_rows_add(&csv->mark, csv->row, csv->length);
-  fwrite(csv->row, 1, csv->length, csv->f);
-  csv->length = 0;
+  csv_row_write(&csv->row, csv->f);
+  csv_rows_add(&csv->mark, &csv->row);
   output_flush(csv->f, csv->path);
   warn_if_gone(csv);
 }

@@ -3,74 +3,52 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
-#include "talus/memory.h"
-
-/* A line of any length, with its end; {0} before the first. */
-struct line {
-  char *text;
-  size_t length, room;
-};
-
-/* Reads the next line; false at the end of the file, and for a last line that
- * was cut short. */
-static bool read_line(FILE *f, struct line *line) {
-  line->length = 0;
-  for (int c; (c = getc(f)) != EOF;) {
-    if (line->length + 2 > line->room) {
-      line->room = 2 * line->room + 256;
-      line->text = mem_resize(line->text, line->room, 1);
-    }
-    line->text[line->length++] = (char)c;
-    line->text[line->length] = '\0';
-    if (c == '\n') return true;
-  }
-  return false;
+/* Read the next row; false at the end of the file, and for a last row that was
+ * cut short. */
+static bool read_row(FILE *f, struct csv_row *row) {
+  return csv_row_read(f, row) && row->ends;
 }
 
 bool csv_rows_read_header(FILE *f, const char *header) {
-  struct line line = {0};
+  struct csv_row row = {0};
   const size_t n = strlen(header);
-  const bool same = read_line(f, &line) && line.length == n + 1 &&
-                    memcmp(line.text, header, n) == 0;
-  mem_free(line.text);
+  const bool same = read_row(f, &row) && row.line.n == n + 1 &&
+                    memcmp(row.line.v, header, n) == 0;
+  csv_row_free(&row);
   return same;
 }
 
-void csv_rows_add(struct csv_mark *mark, const char *row, size_t length) {
+void csv_rows_add(struct csv_mark *mark, const struct csv_row *row) {
   mark->rows++;
-  mark->checksum =
-      (int64_t)crc32((uLong)mark->checksum, (const Bytef *)row, (uInt)length);
+  mark->checksum = (int64_t)crc32(
+      (uLong)mark->checksum, (const Bytef *)row->line.v, (uInt)row->line.n);
 }
 
 bool csv_rows_copy(FILE *old, FILE *new, const struct csv_mark *mark) {
-  struct line line = {0};
+  struct csv_row row = {0};
   struct csv_mark found = {0, 0};
-  while (found.rows < mark->rows && read_line(old, &line)) {
-    csv_rows_add(&found, line.text, line.length);
-    if (new != NULL) fwrite(line.text, 1, line.length, new);
+  while (found.rows < mark->rows && read_row(old, &row)) {
+    csv_rows_add(&found, &row);
+    if (new != NULL) fwrite(row.line.v, 1, row.line.n, new);
   }
-  mem_free(line.text);
+  csv_row_free(&row);
   return found.rows == mark->rows && found.checksum == mark->checksum;
 }
 
-static int count_cells(const char *text) {
+static int count_cells(const char *header) {
   int n = 1;
-  for (; *text != '\0'; text++) n += *text == ',';
+  for (; *header != '\0'; header++) n += *header == ',';
   return n;
 }
 
-/* Reads the first column of a row that is whole: as many cells as the header,
- * no characters but text. */
-static bool read_first(const struct line *line, int ncells, double *value) {
-  char *end;
-  if (strlen(line->text) != line->length || count_cells(line->text) != ncells)
-    return false;
-  *value = strtod(line->text, &end);
-  return end != line->text && *end == ',';
+/* Read the first column of a row that is whole: as many cells as the header, no
+ * characters but text. */
+static bool read_first(const struct csv_row *row, int ncells, double *value) {
+  return row->n == ncells && memchr(row->line.v, '\0', row->line.n) == NULL &&
+         csv_row_number(row, 0, value);
 }
 
 /* Steps without a row, as they are found from the first row to the last. */
@@ -103,20 +81,20 @@ static void pass(struct gaps *gaps, int64_t step) {
 
 void csv_rows_describe(FILE *f, const struct csv_expected *expected,
                        size_t size, char *text) {
-  struct line line = {0};
+  struct csv_row row = {0};
   struct gaps gaps = {.every = expected->every};
   const int ncells = count_cells(expected->header);
   const int64_t written = expected->mark.rows;
   int64_t found = 0;
   double value, previous = -INFINITY;
-  while (read_line(f, &line)) {
-    if (!read_first(&line, ncells, &value) || value > expected->last) continue;
+  while (read_row(f, &row)) {
+    if (!read_first(&row, ncells, &value) || value > expected->last) continue;
     if (expected->every > 0 && value <= previous) continue;
     previous = value;
     found++;
     if (gaps.every > 0) pass(&gaps, (int64_t)value);
   }
-  mem_free(line.text);
+  csv_row_free(&row);
   if (gaps.every > 0)
     pass(&gaps, (int64_t)expected->last / gaps.every * gaps.every + gaps.every);
   char end[64];

@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #include "talus/csv.h"
+#include "talus/csv_row.h"
 
 /* Reads the header, which must be this one. */
 bool csv_rows_read_header(FILE *f, const char *header);
@@ -17,8 +18,8 @@ bool csv_rows_read_header(FILE *f, const char *header);
  * be NULL; false unless they are those that the mark was made of. */
 bool csv_rows_copy(FILE *old, FILE *new, const struct csv_mark *mark);
 
-/* Adds a row, with its end of line, to a mark. */
-void csv_rows_add(struct csv_mark *mark, const char *row, size_t length);
+/* Adds a row to a mark. */
+void csv_rows_add(struct csv_mark *mark, const struct csv_row *row);
 
 /* Says what differs in the rows of `f`, past its header, from those expected;
  * part of a sentence, in `text` [size]. */

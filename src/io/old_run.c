@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "talus/csv_row.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 #include "talus/output.h"
@@ -129,12 +130,17 @@ void old_run_check(const char *directory) {
 bool old_run_time(const char *directory, double *time) {
   bool found = false;
   if (base_rank() != 0) return false;
-  char *path = output_path(directory, "series.csv"), line[1024];
+  char *path = output_path(directory, "series.csv");
   FILE *f = fopen(path, "r");
   mem_free(path);
-  while (f != NULL && fgets(line, sizeof line, f) != NULL)
-    if (sscanf(line, "%*d,%lf,", time) == 1) found = true;
-  if (f != NULL) fclose(f);
+  if (f == NULL) return false;
+  struct csv_row row = {0};
+  double step;
+  while (csv_row_read(f, &row))
+    if (csv_row_number(&row, 0, &step) && csv_row_number(&row, 1, time))
+      found = true;
+  csv_row_free(&row);
+  fclose(f);
   return found;
 }
 

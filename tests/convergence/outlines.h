@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "talus/csv_row.h"
 #include "talus/error.h"
 #include "talus/outline.h"
 
@@ -54,13 +55,17 @@ static inline FILE *reference_open(const char *path) {
 static inline void reference_read_rows(const char *path, double time,
                                        struct curve *curve) {
   FILE *file = reference_open(path);
-  char line[256];
+  struct csv_row row = {0};
   double at, x, height;
   curve->n = 0;
-  while (fgets(line, sizeof line, file)) {
-    if (sscanf(line, "%lf,%lf,%lf", &at, &x, &height) != 3) continue;
-    if (fabs(at - time) < 1e-9) curve_add(curve, x, height);
+  while (csv_row_read(file, &row)) {
+    if (!csv_row_number(&row, 0, &at) || !csv_row_number(&row, 1, &x) ||
+        !csv_row_number(&row, 2, &height) || fabs(at - time) >= 1e-9) {
+      continue;
+    }
+    curve_add(curve, x, height);
   }
+  csv_row_free(&row);
   fclose(file);
   CHECK(curve->n > 2, "%s has no outline at %g", path, time);
 }
@@ -69,19 +74,22 @@ static inline void reference_read_rows(const char *path, double time,
 static inline void reference_read_columns(const char *path, double time,
                                           struct curve *curve) {
   FILE *file = reference_open(path);
-  char line[1024];
+  struct csv_row row = {0};
   int column = 0;
+  double x, height;
   curve->n = 0;
-  while (fgets(line, sizeof line, file)) {
-    int k = 0;
-    double x = NAN;
-    for (char *word = strtok(line, ","); word; word = strtok(NULL, ","), k++) {
-      const bool heading = strncmp(word, "t=", 2) == 0;
-      if (heading && fabs(atof(word + 2) - time) < 1e-9) column = k;
-      if (k == 0) x = atof(word);
-      if (k == column && k > 0 && !heading) curve_add(curve, x, atof(word));
+  while (csv_row_read(file, &row)) {
+    for (int k = 1; k < row.n; k++) {
+      const char *word = csv_row_cell(&row, k);
+      if (strncmp(word, "t=", 2) != 0) continue;
+      if (fabs(atof(word + 2) - time) < 1e-9) column = k;
+    }
+    if (column > 0 && csv_row_number(&row, 0, &x) &&
+        csv_row_number(&row, column, &height)) {
+      curve_add(curve, x, height);
     }
   }
+  csv_row_free(&row);
   fclose(file);
   CHECK(curve->n > 2, "%s has no outline at %g", path, time);
 }

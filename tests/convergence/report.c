@@ -5,12 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "talus/error.h"
+#include "talus/csv_row.h"
 #include "talus/memory.h"
 
 struct report {
   const char *name;
   FILE *csv;
+  struct csv_row row;
   int failed;
 };
 
@@ -19,12 +20,14 @@ static void add_row(struct report *report, const char *grid, const char *norm,
                     int level, double value, double order, const char *bar,
                     bool good) {
   const char *verdict = good && isfinite(value) ? "pass" : "fail";
-  CHECK(!strchr(grid, ',') && !strchr(norm, ','), "a comma in '%s' or '%s'",
-        grid, norm);
-  char text[32] = "";
-  if (!isnan(order)) snprintf(text, sizeof text, "%.2f", order);
-  fprintf(report->csv, "%s,%s,%s,%d,%.6g,%s,%s,%s\n", report->name, grid, norm,
-          level, value, text, bar, verdict);
+  char numbers[3][32] = {"", "", ""};
+  snprintf(numbers[0], sizeof numbers[0], "%d", level);
+  snprintf(numbers[1], sizeof numbers[1], "%.6g", value);
+  if (!isnan(order)) snprintf(numbers[2], sizeof numbers[2], "%.2f", order);
+  const char *const cells[] = {report->name, grid,       norm, numbers[0],
+                               numbers[1],   numbers[2], bar,  verdict};
+  for (int k = 0; k < 8; k++) csv_row_add(&report->row, cells[k]);
+  csv_row_write(&report->row, report->csv);
   fflush(report->csv);
   report->failed += verdict[0] == 'f';
 }
@@ -39,6 +42,7 @@ struct report *report_new(const char *name, FILE *csv) {
 
 int report_end(struct report *report) {
   const int failed = report->failed;
+  csv_row_free(&report->row);
   mem_free(report);
   return failed;
 }
