@@ -44,7 +44,7 @@ LIST = "src/models.c"
 
 # Public headers without a .c of their stem: stem -> owner.
 HEADER_ONLY = {"minmax": "base", "params": "params", "solve": "solver",
-               "table": "base", "morton": "tree", "columns": "base",
+               "hash": "base", "morton": "tree", "columns": "base",
                "scalars": "base", "stopwatch": "base", "poison": "base",
                "key": "params", "model": "models"}
 

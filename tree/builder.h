@@ -9,9 +9,9 @@
 
 #include "exchange.h"
 #include "talus/count.h"
+#include "talus/hash.h"
 #include "talus/mesh.h"
 #include "talus/morton.h"
-#include "talus/table.h"
 
 enum {
   KIND_SHIFT = 28,
@@ -49,10 +49,10 @@ struct boundary_node {
 
 struct builder {
   struct mesh *mesh;
-  const struct curve *curve;
+  const struct brick *brick;
   const struct forest_layout *layout;
   const uint64_t *first_keys;
-  struct table table;
+  struct hash hash;
   struct average *average;
   int32_t naverages, average_capacity;
   int32_t *group_of;   /* [nleaves + nghosts] virtual group, -1 */
@@ -72,7 +72,7 @@ void request_add(struct builder *b, uint64_t key, int32_t tag, int rank,
 /* Rank that holds `key`. */
 int key_rank(const struct builder *b, uint64_t key);
 
-/* mesh_ghost.c: leaves, ghosts, their geometry and table. */
+/* mesh_ghost.c: leaves, ghosts, their geometry and hash. */
 void build_leaves(struct builder *b);
 /* mesh_stencil.c: stencils and helper nodes, with final indices. */
 void build_stencils(struct builder *b);

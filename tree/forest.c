@@ -19,7 +19,7 @@ struct forest {
   MPI_Comm comm;
   int rank, nranks;
   struct forest_layout layout;
-  struct curve curve;
+  struct brick brick;
   p4est_connectivity_t *connectivity;
   p4est_t *p4est;
   uint64_t revision;
@@ -49,27 +49,27 @@ static p4est_connectivity_t *brick_new(const struct forest_layout *l) {
 #endif
 }
 
-/* p4est numbers the trees of a brick along its own curve; the first vertex
+/* p4est numbers the trees of a brick in an order of its own; the first vertex
  * of each tells its place. */
-static void curve_begin(struct forest *forest) {
-  struct curve *curve = &forest->curve;
+static void brick_begin(struct forest *forest) {
+  struct brick *brick = &forest->brick;
   const p4est_connectivity_t *conn = forest->connectivity;
-  curve->ntrees = conn->num_trees;
-  curve->tree_number = MEM_NEW(int32_t, curve->ntrees);
-  curve->tree_place = mem_alloc(curve->ntrees, sizeof *curve->tree_place);
-  for (int32_t t = 0; t < curve->ntrees; t++) {
+  brick->ntrees = conn->num_trees;
+  brick->tree_number = MEM_NEW(int32_t, brick->ntrees);
+  brick->tree_place = mem_alloc(brick->ntrees, sizeof *brick->tree_place);
+  for (int32_t t = 0; t < brick->ntrees; t++) {
     const double *v =
         conn->vertices + 3 * conn->tree_to_vertex[P4EST_CHILDREN * t];
     int64_t place = 0;
     for (int d = DIM - 1; d >= 0; d--) {
-      curve->tree_place[t][d] = (int32_t)(v[d] + 0.5);
-      place = place * curve->trees[d] + curve->tree_place[t][d];
+      brick->tree_place[t][d] = (int32_t)(v[d] + 0.5);
+      place = place * brick->trees[d] + brick->tree_place[t][d];
     }
-    curve->tree_number[place] = t;
+    brick->tree_number[place] = t;
   }
 }
 
-static void quadrant_place(const struct curve *curve, p4est_topidx_t tree,
+static void quadrant_place(const struct brick *brick, p4est_topidx_t tree,
                            const p4est_quadrant_t *q, int64_t x[DIM]) {
   const p4est_qcoord_t local[] = {
     q->x,
@@ -79,7 +79,7 @@ static void quadrant_place(const struct curve *curve, p4est_topidx_t tree,
 #endif
   };
   for (int d = 0; d < DIM; d++) {
-    x[d] = ((int64_t)curve->tree_place[tree][d] << FOREST_MAX_LEVEL) +
+    x[d] = ((int64_t)brick->tree_place[tree][d] << FOREST_MAX_LEVEL) +
            (local[d] >> COORDINATE_SHIFT);
   }
 }
@@ -88,12 +88,12 @@ static void first_keys_update(struct forest *forest) {
   const p4est_t *p4est = forest->p4est;
   for (int r = 0; r <= forest->nranks; r++) {
     const p4est_quadrant_t *q = p4est->global_first_position + r;
-    if (q->p.which_tree >= forest->curve.ntrees) {
-      forest->first_keys[r] = (uint64_t)forest->curve.ntrees << CURVE_BITS;
+    if (q->p.which_tree >= forest->brick.ntrees) {
+      forest->first_keys[r] = (uint64_t)forest->brick.ntrees << MORTON_BITS;
     } else {
       int64_t x[DIM];
-      quadrant_place(&forest->curve, q->p.which_tree, q, x);
-      forest->first_keys[r] = curve_key(&forest->curve, x);
+      quadrant_place(&forest->brick, q->p.which_tree, q, x);
+      forest->first_keys[r] = morton_key(&forest->brick, x);
     }
   }
 }
@@ -106,13 +106,13 @@ static struct forest *forest_begin(MPI_Comm comm,
   MPI_CHECK(MPI_Comm_rank(comm, &forest->rank));
   MPI_CHECK(MPI_Comm_size(comm, &forest->nranks));
   forest->layout = *layout;
-  for (int d = 0; d < DIM; d++) forest->curve.trees[d] = layout->trees[d];
+  for (int d = 0; d < DIM; d++) forest->brick.trees[d] = layout->trees[d];
   int64_t ntrees = 1;
   for (int d = 0; d < DIM; d++) ntrees *= layout->trees[d];
   CHECK(ntrees <= FOREST_MAX_TREES, "brick of %lld trees, at most %d",
         (long long)ntrees, FOREST_MAX_TREES);
   forest->connectivity = brick_new(layout);
-  curve_begin(forest);
+  brick_begin(forest);
   forest->first_keys = MEM_NEW(uint64_t, forest->nranks + 1);
   return forest;
 }
@@ -135,20 +135,20 @@ struct forest *forest_new(MPI_Comm comm, const struct forest_layout *layout,
 static bool unfold_levels(const struct forest *forest, int64_t n,
                           const int8_t *levels, uint64_t key,
                           p4est_qcoord_t *out, p4est_gloidx_t *pertree) {
-  const uint64_t end = (uint64_t)forest->curve.ntrees << CURVE_BITS;
+  const uint64_t end = (uint64_t)forest->brick.ntrees << MORTON_BITS;
   for (int64_t i = 0; i < n; i++) {
     if (levels[i] < 0 || levels[i] > FOREST_MAX_LEVEL || key >= end ||
-        key % curve_span(levels[i]) != 0) {
+        key % morton_span(levels[i]) != 0) {
       return false;
     }
-    const uint64_t morton = key & (((uint64_t)1 << CURVE_BITS) - 1);
+    const uint64_t morton = key & (((uint64_t)1 << MORTON_BITS) - 1);
     for (int d = 0; d < DIM; d++) {
       out[(DIM + 1) * i + d] =
-          (p4est_qcoord_t)(curve_gather(morton >> d) << COORDINATE_SHIFT);
+          (p4est_qcoord_t)(morton_gather(morton >> d) << COORDINATE_SHIFT);
     }
     out[(DIM + 1) * i + DIM] = levels[i];
-    pertree[(key >> CURVE_BITS) + 1]++;
-    key += curve_span(levels[i]);
+    pertree[(key >> MORTON_BITS) + 1]++;
+    key += morton_span(levels[i]);
   }
   return true;
 }
@@ -157,12 +157,12 @@ struct forest *forest_from_levels(MPI_Comm comm,
                                   const struct forest_layout *layout, int64_t n,
                                   const int8_t *levels) {
   struct forest *forest = forest_begin(comm, layout);
-  const int32_t ntrees = forest->curve.ntrees;
+  const int32_t ntrees = forest->brick.ntrees;
   count_index(n, "leaves");
   uint64_t span = 0, start = 0, total = 0;
   for (int64_t i = 0; i < n; i++) {
     bool valid = levels[i] >= 0 && levels[i] <= FOREST_MAX_LEVEL;
-    span += valid ? curve_span(levels[i]) : 1;
+    span += valid ? morton_span(levels[i]) : 1;
   }
   MPI_CHECK(MPI_Exscan(&span, &start, 1, MPI_UINT64_T, MPI_SUM, comm));
   if (forest->rank == 0) start = 0;
@@ -174,7 +174,7 @@ struct forest *forest_from_levels(MPI_Comm comm,
   p4est_gloidx_t *first = MEM_NEW(p4est_gloidx_t, forest->nranks + 1);
   int good = unfold_levels(forest, n, levels, start,
                            (p4est_qcoord_t *)quadrants->array, pertree);
-  good = good && total == (uint64_t)ntrees << CURVE_BITS;
+  good = good && total == (uint64_t)ntrees << MORTON_BITS;
   MPI_CHECK(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, comm));
   if (good) {
     int64_t count = n;
@@ -204,8 +204,8 @@ void forest_destroy(struct forest *forest) {
   if (forest->p4est) p4est_destroy(forest->p4est);
   p4est_connectivity_destroy(forest->connectivity);
   MPI_CHECK(MPI_Comm_free(&forest->comm));
-  mem_free(forest->curve.tree_number);
-  mem_free(forest->curve.tree_place);
+  mem_free(forest->brick.tree_number);
+  mem_free(forest->brick.tree_place);
   mem_free(forest->first_keys);
   mem_free(forest);
 }
@@ -226,8 +226,8 @@ const struct forest_layout *forest_layout(const struct forest *forest) {
   return &forest->layout;
 }
 MPI_Comm forest_comm(const struct forest *forest) { return forest->comm; }
-const struct curve *forest_curve(const struct forest *forest) {
-  return &forest->curve;
+const struct brick *forest_brick(const struct forest *forest) {
+  return &forest->brick;
 }
 const uint64_t *forest_first_keys(const struct forest *forest) {
   return forest->first_keys;
@@ -264,8 +264,8 @@ void forest_levels(const struct forest *forest, int8_t *levels) {
 static void take_key(const struct forest *forest, p4est_topidx_t tree,
                      p4est_quadrant_t *q, int32_t i, void *context) {
   int64_t x[DIM];
-  quadrant_place(&forest->curve, tree, q, x);
-  ((uint64_t *)context)[i] = curve_key(&forest->curve, x);
+  quadrant_place(&forest->brick, tree, q, x);
+  ((uint64_t *)context)[i] = morton_key(&forest->brick, x);
 }
 
 void forest_keys(const struct forest *forest, uint64_t *keys) {
@@ -331,19 +331,19 @@ static void map_make(const struct forest *forest, int32_t nold,
   forest_keys(forest, key);
   forest_levels(forest, map->level);
   for (int32_t i = 0, j = 0; i < nnew; i++) {
-    const uint64_t end = key[i] + curve_span(map->level[i]);
-    while (old_key[j] + curve_span(old_level[j]) <= key[i]) j++;
+    const uint64_t end = key[i] + morton_span(map->level[i]);
+    while (old_key[j] + morton_span(old_level[j]) <= key[i]) j++;
     int32_t last = j;
     while (last + 1 < nold && old_key[last + 1] < end) last++;
     map->first[i] = j;
     map->count[i] = last - j + 1;
     map->delta[i] = (int8_t)(last > j ? -1 : map->level[i] - old_level[j]);
     int64_t x[DIM];
-    curve_coordinates(&forest->curve, key[i], x);
+    morton_coordinates(&forest->brick, key[i], x);
     for (int d = 0; d < DIM; d++) {
-      double centre = (double)x[d] + 0.5 * (double)curve_edge(map->level[i]);
+      double centre = (double)x[d] + 0.5 * (double)morton_edge(map->level[i]);
       map->x[i][d] =
-          layout->origin[d] + layout->size * centre / (double)curve_edge(0);
+          layout->origin[d] + layout->size * centre / (double)morton_edge(0);
     }
   }
   mem_free(key);

@@ -7,7 +7,7 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 
-uint64_t mesh_key_span(int level) { return curve_span(level); }
+uint64_t mesh_key_span(int level) { return morton_span(level); }
 
 int32_t list_grow(void **list, int32_t *n, int32_t *capacity, size_t size) {
   count_check((int64_t)*n + 1, KIND_MOST, "nodes of a kind");
@@ -52,13 +52,13 @@ struct mesh *mesh_new(struct forest *forest) {
   mesh->first_keys = forest_first_keys(forest);
   mesh->exchange = MEM_NEW(struct mesh_exchange, 1);
   struct builder b = {.mesh = mesh,
-                      .curve = forest_curve(forest),
+                      .brick = forest_brick(forest),
                       .layout = forest_layout(forest),
                       .first_keys = mesh->first_keys};
   build_leaves(&b);
   build_stencils(&b);
   build_faces(&b);
-  table_end(&b.table);
+  hash_end(&b.hash);
   mem_free(b.average);
   mem_free(b.group_of);
   mem_free(b.group_leaf);

@@ -67,10 +67,10 @@ static int32_t ghost_face(struct builder *b, int32_t leaf, int f,
                           int32_t *nghost) {
   const struct mesh *mesh = b->mesh;
   const uint64_t key = (uint64_t)leaf * NFACE + (uint64_t)f;
-  int32_t face = table_find(&b->table, key, TAG_FACE);
+  int32_t face = hash_find(&b->hash, key, TAG_FACE);
   if (face < 0) {
     face = mesh->nfaces + (*nghost)++;
-    table_insert(&b->table, key, TAG_FACE, face);
+    hash_insert(&b->hash, key, TAG_FACE, face);
     request_add(b, mesh->key[leaf], f, key_rank(b, mesh->key[leaf]), face);
   }
   return face;
@@ -82,17 +82,17 @@ static void fine_faces(struct builder *b, int32_t i, int f,
   const struct mesh *mesh = b->mesh;
   const int d = f >> 1, side = f & 1, level = mesh->level[i];
   int64_t x[DIM];
-  curve_coordinates(b->curve, mesh->key[i], x);
-  const int64_t extent = (int64_t)b->layout->trees[d] * curve_edge(0);
-  x[d] += (side ? 1 : -1) * curve_edge(level);
+  morton_coordinates(b->brick, mesh->key[i], x);
+  const int64_t extent = (int64_t)b->layout->trees[d] * morton_edge(0);
+  x[d] += (side ? 1 : -1) * morton_edge(level);
   if (x[d] < 0) x[d] += extent;
   if (x[d] >= extent) x[d] -= extent;
-  const uint64_t key = curve_key(b->curve, x);
+  const uint64_t key = morton_key(b->brick, x);
   int n = 0;
   for (int c = 0; c < NCHILD; c++) {
     if ((c >> d & 1) == side) continue; /* not on our side */
-    uint64_t child = key + (uint64_t)c * curve_span(level + 1);
-    int32_t leaf = table_find(&b->table, child, TAG_LEAF);
+    uint64_t child = key + (uint64_t)c * morton_span(level + 1);
+    int32_t leaf = hash_find(&b->hash, child, TAG_LEAF);
     CHECK(leaf >= 0 && mesh->level[leaf] == level + 1, "no finer leaf");
     fine[n++] = leaf < mesh->nleaves ? mesh->cell_face[leaf][f ^ 1]
                                      : ghost_face(b, leaf, f ^ 1, nghost);
@@ -106,7 +106,7 @@ static void ask_faces(struct builder *b) {
   struct plan_request *asked =
       plan_ask(plan, b->nrequests, b->request, &nasked);
   for (int64_t k = 0; k < nasked; k++) {
-    int32_t leaf = table_find(&b->table, asked[k].key, TAG_LEAF);
+    int32_t leaf = hash_find(&b->hash, asked[k].key, TAG_LEAF);
     CHECK(leaf >= 0 && leaf < mesh->nleaves, "asked for an unknown face");
     int32_t face = mesh->cell_face[leaf][asked[k].tag];
     CHECK(face >= 0 && face < mesh->nfaces, "asked for a face of another");

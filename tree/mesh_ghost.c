@@ -29,14 +29,14 @@ static bool region_key(const struct builder *b, const int64_t x[DIM],
                        const int o[DIM], int level, uint64_t *key) {
   int64_t place[DIM];
   for (int d = 0; d < DIM; d++) {
-    const int64_t extent = (int64_t)b->layout->trees[d] * curve_edge(0);
-    place[d] = x[d] + o[d] * curve_edge(level);
+    const int64_t extent = (int64_t)b->layout->trees[d] * morton_edge(0);
+    place[d] = x[d] + o[d] * morton_edge(level);
     if (place[d] < 0 || place[d] >= extent) {
       if (!b->layout->periodic[d]) return false;
       place[d] += place[d] < 0 ? extent : -extent;
     }
   }
-  *key = curve_key(b->curve, place);
+  *key = morton_key(b->brick, place);
   return true;
 }
 
@@ -55,9 +55,9 @@ static void find_receivers(struct builder *b, int32_t i,
   const struct mesh *mesh = b->mesh;
   const uint64_t first = b->first_keys[mesh->rank];
   const uint64_t end = b->first_keys[mesh->rank + 1];
-  const uint64_t span = curve_span(mesh->level[i]);
+  const uint64_t span = morton_span(mesh->level[i]);
   int64_t x[DIM];
-  curve_coordinates(b->curve, mesh->key[i], x);
+  morton_coordinates(b->brick, mesh->key[i], x);
   for (int s = 0; s < NSTENCIL; s++) {
     const int all[] = {s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1};
     uint64_t key;
@@ -145,19 +145,19 @@ static void add_ghosts(struct builder *b) {
 static void set_geometry(struct builder *b) {
   struct mesh *mesh = b->mesh;
   const int32_t n = mesh->nleaves + mesh->nghosts;
-  const double unit = b->layout->size / (double)curve_edge(0);
+  const double unit = b->layout->size / (double)morton_edge(0);
   mesh->x = mem_alloc((size_t)n, sizeof *mesh->x);
   mesh->h = MEM_NEW(double, n);
-  table_begin(&b->table, (int64_t)n + n / 4); /* leaves and helper nodes */
+  hash_begin(&b->hash, (int64_t)n + n / 4); /* leaves and helper nodes */
   for (int32_t i = 0; i < n; i++) {
     int64_t x[DIM];
-    const double edge = (double)curve_edge(mesh->level[i]);
-    curve_coordinates(b->curve, mesh->key[i], x);
+    const double edge = (double)morton_edge(mesh->level[i]);
+    morton_coordinates(b->brick, mesh->key[i], x);
     mesh->h[i] = unit * edge;
     for (int d = 0; d < DIM; d++) {
       mesh->x[i][d] = b->layout->origin[d] + unit * ((double)x[d] + 0.5 * edge);
     }
-    table_insert(&b->table, mesh->key[i], TAG_LEAF, i);
+    hash_insert(&b->hash, mesh->key[i], TAG_LEAF, i);
   }
 }
 

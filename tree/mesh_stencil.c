@@ -16,7 +16,7 @@
 static bool is_local(const struct builder *b, uint64_t key, int level) {
   const int rank = b->mesh->rank;
   return key < b->first_keys[rank + 1] &&
-         key + curve_span(level) > b->first_keys[rank];
+         key + morton_span(level) > b->first_keys[rank];
 }
 
 static int32_t average_get(struct builder *b, uint64_t key, int level);
@@ -26,7 +26,7 @@ static int32_t average_get(struct builder *b, uint64_t key, int level);
 static int32_t average_child_get(struct builder *b, uint64_t key, int level) {
   const struct mesh *mesh = b->mesh;
   if (!is_local(b, key, level)) return -1;
-  int32_t leaf = table_find(&b->table, key, TAG_LEAF);
+  int32_t leaf = hash_find(&b->hash, key, TAG_LEAF);
   if (leaf >= 0 && mesh->level[leaf] == level) {
     return leaf < mesh->nleaves ? leaf : -1;
   }
@@ -35,15 +35,15 @@ static int32_t average_child_get(struct builder *b, uint64_t key, int level) {
 
 /* Return the average node over (key, level), made on demand. */
 static int32_t average_get(struct builder *b, uint64_t key, int level) {
-  int32_t k = table_find(&b->table, key, level + 1);
+  int32_t k = hash_find(&b->hash, key, level + 1);
   if (k >= 0) return node_name(KIND_AVERAGE, k);
   k = list_grow((void **)&b->average, &b->naverages, &b->average_capacity,
                 sizeof *b->average);
-  table_insert(&b->table, key, level + 1, k);
+  hash_insert(&b->hash, key, level + 1, k);
   b->average[k].key = key;
   b->average[k].level = level;
   for (int c = 0; c < NCHILD; c++) {
-    uint64_t child_key = key + (uint64_t)c * curve_span(level + 1);
+    uint64_t child_key = key + (uint64_t)c * morton_span(level + 1);
     int32_t child = average_child_get(b, child_key, level + 1);
     b->average[k].child[c] = child; /* the list may have moved */
   }
@@ -63,16 +63,16 @@ static int32_t virtual_get(struct builder *b, int32_t leaf, int child) {
 /* Node of the given level that covers the region at `key`. */
 static int32_t node_at(struct builder *b, uint64_t key, int level) {
   const struct mesh *mesh = b->mesh;
-  int32_t leaf = table_find(&b->table, key, TAG_LEAF);
+  int32_t leaf = hash_find(&b->hash, key, TAG_LEAF);
   if (leaf >= 0 && mesh->level[leaf] == level) return leaf;
   if (leaf < 0 && level > 0) {
-    uint64_t parent = key & ~(curve_span(level - 1) - 1);
-    leaf = table_find(&b->table, parent, TAG_LEAF);
+    uint64_t parent = key & ~(morton_span(level - 1) - 1);
+    leaf = hash_find(&b->hash, parent, TAG_LEAF);
     if (leaf >= 0 && mesh->level[leaf] > level) leaf = -1;
   }
   if (leaf >= 0 && mesh->level[leaf] < level) {
     CHECK(mesh->level[leaf] == level - 1, "grid is not 2:1 balanced");
-    int child = (int)(key / curve_span(level)) & (NCHILD - 1);
+    int child = (int)(key / morton_span(level)) & (NCHILD - 1);
     return virtual_get(b, leaf, child);
   }
   return average_get(b, key, level);
@@ -95,16 +95,16 @@ static void add_shares(struct builder *b, int32_t k, int d,
 static int32_t boundary_get(struct builder *b, int32_t source,
                             const int64_t x[DIM], const int outside[DIM],
                             int level) {
-  const double unit = b->layout->size / (double)curve_edge(0);
-  const double h = unit * (double)curve_edge(level);
+  const double unit = b->layout->size / (double)morton_edge(0);
+  const double h = unit * (double)morton_edge(level);
   uint64_t code = 0;
   for (int d = DIM - 1; d >= 0; d--) code = 3 * code + (outside[d] + 1);
   uint64_t key = code << 32 | (uint32_t)source;
-  int32_t k = table_find(&b->table, key, TAG_BOUNDARY);
+  int32_t k = hash_find(&b->hash, key, TAG_BOUNDARY);
   if (k >= 0) return node_name(KIND_BOUNDARY, k);
   k = list_grow((void **)&b->boundary, &b->nboundary, &b->boundary_capacity,
                 sizeof *b->boundary);
-  table_insert(&b->table, key, TAG_BOUNDARY, k);
+  hash_insert(&b->hash, key, TAG_BOUNDARY, k);
   b->boundary[k].source = source;
   b->boundary[k].h = h;
   for (int d = 0; d < DIM; d++) {
@@ -134,8 +134,8 @@ static int32_t stencil_node(struct builder *b, const int64_t place[DIM], int s,
   int outside[DIM];
   bool inside = true;
   for (int d = 0; d < DIM; d++) {
-    const int64_t extent = (int64_t)b->layout->trees[d] * curve_edge(0);
-    x[d] = place[d] + o[d] * curve_edge(level);
+    const int64_t extent = (int64_t)b->layout->trees[d] * morton_edge(0);
+    x[d] = place[d] + o[d] * morton_edge(level);
     outside[d] = 0;
     if (x[d] >= 0 && x[d] < extent) continue;
     if (b->layout->periodic[d]) {
@@ -146,7 +146,7 @@ static int32_t stencil_node(struct builder *b, const int64_t place[DIM], int s,
       inside = false;
     }
   }
-  int32_t node = node_at(b, curve_key(b->curve, x), level);
+  int32_t node = node_at(b, morton_key(b->brick, x), level);
   return inside ? node : boundary_get(b, node, x, outside, level);
 }
 
@@ -169,7 +169,7 @@ static void ask_averages(struct builder *b) {
   for (int32_t k = 0; k < n; k++) {
     if (!needed[k]) continue;
     const struct average *a = &b->average[k];
-    int last = key_rank(b, a->key + curve_span(a->level) - 1);
+    int last = key_rank(b, a->key + morton_span(a->level) - 1);
     for (int r = key_rank(b, a->key); r <= last; r++) {
       if (r != mesh->rank && b->first_keys[r] < b->first_keys[r + 1]) {
         request_add(b, a->key, a->level, r, k);
@@ -202,7 +202,7 @@ static void ask_virtuals(struct builder *b) {
   struct plan_request *asked =
       plan_ask(plan, b->nrequests, b->request, &nasked);
   for (int64_t k = 0; k < nasked; k++) {
-    int32_t leaf = table_find(&b->table, asked[k].key, TAG_LEAF);
+    int32_t leaf = hash_find(&b->hash, asked[k].key, TAG_LEAF);
     CHECK(leaf >= 0 && leaf < mesh->nleaves, "asked for an unknown leaf");
     plan->send_index[k] = node_number(virtual_get(b, leaf, 0)) / NCHILD;
   }
@@ -324,7 +324,7 @@ static void set_plans(struct mesh *mesh, const int32_t *average,
 static void link_siblings(const struct mesh *mesh, int32_t i) {
   const int last = NCHILD - 1, level = mesh->level[i];
   if (level == 0 || i + last >= mesh->nleaves) return;
-  const uint64_t span = curve_span(level), key = mesh->key[i];
+  const uint64_t span = morton_span(level), key = mesh->key[i];
   if (key % (NCHILD * span) != 0 || mesh->level[i + last] != level ||
       mesh->key[i + last] != key + (uint64_t)last * span) {
     return;
@@ -349,7 +349,7 @@ static void find_nodes(struct builder *b) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     int64_t x[DIM];
     int32_t *node = mesh->stencil[i];
-    curve_coordinates(b->curve, mesh->key[i], x);
+    morton_coordinates(b->brick, mesh->key[i], x);
     node[STENCIL_CENTRE] = i;
     link_siblings(mesh, i);
     for (int s = 0; s < NSTENCIL; s++) {

@@ -2,7 +2,7 @@
 /* Droplets: grains that lie or fly apart from the heap.
  *
  * Leaves with c > DROPLETS_THRESHOLD that share faces make a set. The set of
- * the largest volume is the heap (of equal ones the first along the curve), the
+ * the largest volume is the heap (of equal ones the first in Morton order), the
  * others are droplets. Sets may stretch over ranks. */
 #ifndef TALUS_DROPLETS_H
 #define TALUS_DROPLETS_H

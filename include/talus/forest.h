@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forest: the distributed quadtree/octree, held by p4est.
  *
- * A brick of cubic trees of edge `size`; leaves are numbered along the
- * space-filling curve, each rank holding one contiguous piece. The forest
+ * A brick of cubic trees of edge `size`; leaves are numbered in Morton order
+ * (morton.h), each rank holding one contiguous piece. The forest
  * knows topology only; physics works on the flattened mesh (mesh.h).
  * Refinement is 2:1 over faces, edges and corners. Every change of the
  * leaves or of their distribution raises the revision.
@@ -62,7 +62,7 @@ struct forest_map {
 /* Uniform forest at `level`. Collective. The layout is copied. */
 struct forest *forest_new(MPI_Comm comm, const struct forest_layout *layout,
                           int level);
-/* Forest from a list of the levels of all leaves in curve order, as
+/* Forest from a list of the levels of all leaves in Morton order, as
  * forest_levels gives it: `levels` [n] is this rank's contiguous share of
  * the global list. Collective. Returns NULL on all ranks if the levels do
  * not tile the brick. */

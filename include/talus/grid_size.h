@@ -4,8 +4,8 @@
  * Leaves are counted by walking down the tree level by level. On each a cell is
  * divided where a criterion wants it finer, as adapt.c would do, the functions
  * of the case sampled on a lattice over the cell and the band around it. Of
- * more than some hundred cells of a level a random one in each stretch of the
- * curve stands for all of that stretch: the sum over them is an unbiased
+ * more than some hundred cells of a level a random one in each stretch of
+ * Morton order stands for all of that stretch: the sum over them is an unbiased
  * estimate, and the work grows with the number of levels only. A uniform grid
  * is counted exactly; adapted ones are within 25 % of the real ones
  * (tests/mesh/test_grid_size.c), columns of 1e5 leaves within 3 %.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* HDF5 files read and written by all ranks together.
  *
- * A dataset is a table of `columns` values per row; the rows of rank 0 come
+ * A dataset has `columns` values per row; the rows of rank 0 come
  * first, then those of rank 1 and so on. Attributes are the same on all ranks.
  * An object is "/" (the file), a group or a dataset.
  *
@@ -38,7 +38,7 @@ void hdf5_write_group(struct hdf5_file *file, const char *name);
 void hdf5_write(struct hdf5_file *file, const char *name, enum hdf5_type type,
                 int64_t rows, int columns, const void *data);
 /* The same, with data [n][columns] of the rows [first, first + n) of this rank
- * made by `fill` a piece at a time, in order, so that no table is held whole.
+ * made by `fill` a piece at a time, in order, so that none is held whole.
  * A rank has fill called for its own rows only. */
 typedef void hdf5_fill(void *context, int64_t first, int64_t n, void *data);
 void hdf5_write_pieces(struct hdf5_file *file, const char *name,

@@ -5,7 +5,7 @@
  * Level l holds every node of level l of the tree: leaves of level l and
  * merged nodes; a leaf coarser than l is not copied. All nodes live in one
  * array of slots, level after level, within a level by child number, red ones
- * (even sum of integer coordinates) before black ones, each in curve order.
+ * (even sum of integer coordinates) before black ones, each in Morton order.
  *
  * On a level lives the two-point operator
  *   (A e)_i = m_i e_i - sum_f w_if (e_n(f) - e_i),  w = alpha area / h,
@@ -54,8 +54,8 @@
  * 1 (the same). At walls: images of the nodes inside without the factor (15 to
  * 20 % more viscous iterations in a collapse).
  *
- * Parallel: the children of a node belong to the rank that holds the curve
- * position of the node's first corner, whoever has the leaves; levels of few
+ * Parallel: the children of a node belong to the rank that holds the
+ * Morton key of the node's first corner, whoever has the leaves; levels of few
  * nodes are gathered on rank 0. Message plans are made once.
  *
  * Sources: [brandt_1977] for the composite grid, [wesseling_1988] for

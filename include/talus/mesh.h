@@ -2,7 +2,7 @@
 /* Mesh: the forest flattened into plain arrays.
  *
  * Index space of a cell array, length ncells:
- *   [0, nleaves)                 leaves of this rank, in curve order
+ *   [0, nleaves)                 leaves of this rank, in Morton order
  *   [nleaves, begin_average)     ghosts: leaves of other ranks that touch ours
  *   [begin_average, begin_virtual)  averages of finer leaves
  *   [begin_virtual, begin_boundary) virtual children of coarser leaves
@@ -88,7 +88,7 @@ struct mesh {
   double (*x)[DIM]; /* [nleaves + nghosts] centres, m */
   double *h;        /* [nleaves + nghosts] edge, m */
   int8_t *level;    /* [nleaves + nghosts] */
-  uint64_t *key;    /* [nleaves + nghosts] curve position of first corner */
+  uint64_t *key;    /* [nleaves + nghosts] Morton key of first corner */
   int32_t (*stencil)[NSTENCIL]; /* [nleaves] */
 
   int32_t nfaces, begin_face_average, nfaces_all;
@@ -121,7 +121,7 @@ struct mesh {
 
   int level_finest;           /* over all ranks */
   const uint64_t *first_keys; /* [nranks + 1] first key of every rank's share
-                                 of the curve; borrowed from the forest */
+                                 of the leaves; borrowed from the forest */
 };
 
 /* Geometry. The functions below alone know how much sides and volumes weigh;

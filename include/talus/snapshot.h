@@ -2,7 +2,7 @@
 /* Snapshots: the fields at one time, for ParaView and for Python.
  *
  * Leaves are quads or hexahedra with shared vertices in an unstructured grid,
- * in curve order. A vertex is shared within a rank; on the border of two ranks
+ * in Morton order. A vertex is shared within a rank; on the border of two ranks
  * each has its own. Where leaves of two sizes meet the finer ones have vertices
  * on the side of the coarser one (hanging nodes).
  *

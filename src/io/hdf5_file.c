@@ -215,59 +215,59 @@ static void place_rows(MPI_Comm comm, int64_t rows, int64_t *first,
 }
 
 /* A dataset while it is written. */
-struct table {
+struct dataset {
   hid_t set, space;
   enum hdf5_type type;
   int columns;
   int64_t first; /* row of all that this rank begins with */
 };
 
-static struct table table_create(struct hdf5_file *file, const char *name,
-                                 enum hdf5_type type, int64_t rows,
-                                 int columns) {
-  struct table table = {.type = type, .columns = columns};
+static struct dataset dataset_create(struct hdf5_file *file, const char *name,
+                                     enum hdf5_type type, int64_t rows,
+                                     int columns) {
+  struct dataset dataset = {.type = type, .columns = columns};
   int64_t all;
-  place_rows(file->comm, rows, &table.first, &all);
+  place_rows(file->comm, rows, &dataset.first, &all);
   hsize_t size[2] = {(hsize_t)all, (hsize_t)columns};
-  table.space =
+  dataset.space =
       H5_CHECK(file, H5Screate_simple(columns == 1 ? 1 : 2, size, NULL));
-  table.set =
-      H5_CHECK(file, H5Dcreate2(file->id, name, memory_type(type), table.space,
-                                H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  dataset.set = H5_CHECK(
+      file, H5Dcreate2(file->id, name, memory_type(type), dataset.space,
+                       H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   /* parallel HDF5 has its place from the start */
-  haddr_t begin = H5Dget_offset(table.set);
+  haddr_t begin = H5Dget_offset(dataset.set);
   if (begin != HADDR_UNDEF)
-    reserve(file, begin, H5Dget_storage_size(table.set));
-  return table;
+    reserve(file, begin, H5Dget_storage_size(dataset.set));
+  return dataset;
 }
 
 /* Rows [first, first + rows) of those of this rank. */
-static void table_write(struct hdf5_file *file, const struct table *table,
-                        int64_t first, int64_t rows, const void *data) {
-  hid_t memory = select_rows(file, table->space, table->first + first, rows,
-                             table->columns);
-  H5_CHECK(file, H5Dwrite(table->set, memory_type(table->type), memory,
-                          table->space, file->transfer, data));
+static void dataset_write(struct hdf5_file *file, const struct dataset *dataset,
+                          int64_t first, int64_t rows, const void *data) {
+  hid_t memory = select_rows(file, dataset->space, dataset->first + first, rows,
+                             dataset->columns);
+  H5_CHECK(file, H5Dwrite(dataset->set, memory_type(dataset->type), memory,
+                          dataset->space, file->transfer, data));
   H5_CHECK(file, H5Sclose(memory));
 }
 
-static void table_close(struct hdf5_file *file, struct table *table) {
-  H5_CHECK(file, H5Dclose(table->set));
-  H5_CHECK(file, H5Sclose(table->space));
+static void dataset_close(struct hdf5_file *file, struct dataset *dataset) {
+  H5_CHECK(file, H5Dclose(dataset->set));
+  H5_CHECK(file, H5Sclose(dataset->space));
 }
 
 void hdf5_write(struct hdf5_file *file, const char *name, enum hdf5_type type,
                 int64_t rows, int columns, const void *data) {
-  struct table table = table_create(file, name, type, rows, columns);
-  table_write(file, &table, 0, rows, data);
-  table_close(file, &table);
+  struct dataset dataset = dataset_create(file, name, type, rows, columns);
+  dataset_write(file, &dataset, 0, rows, data);
+  dataset_close(file, &dataset);
 }
 
 void hdf5_write_pieces(struct hdf5_file *file, const char *name,
                        enum hdf5_type type, int64_t rows, int columns,
                        hdf5_fill *fill, void *context) {
   const int64_t most = PIECE_LENGTH / columns;
-  struct table table = table_create(file, name, type, rows, columns);
+  struct dataset dataset = dataset_create(file, name, type, rows, columns);
   double *data = MEM_NEW(double, PIECE_LENGTH); /* no type is wider */
   int64_t end;
   MPI_CHECK(MPI_Allreduce(&rows, &end, 1, MPI_INT64_T, MPI_MAX, file->comm));
@@ -275,10 +275,10 @@ void hdf5_write_pieces(struct hdf5_file *file, const char *name,
     const int64_t left = rows > first ? rows - first : 0;
     const int64_t n = left < most ? left : most;
     if (n > 0) fill(context, first, n, data);
-    table_write(file, &table, n > 0 ? first : 0, n, data);
+    dataset_write(file, &dataset, n > 0 ? first : 0, n, data);
   }
   mem_free(data);
-  table_close(file, &table);
+  dataset_close(file, &dataset);
 }
 
 bool hdf5_read_size(struct hdf5_file *file, const char *name, int64_t *rows,

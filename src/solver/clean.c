@@ -27,7 +27,7 @@ struct clean {
   int32_t ntrees;
   int trees[DIM];
   uint64_t tree_span;
-  int32_t *tree_number; /* [ntrees] curve number of the tree at a place */
+  int32_t *tree_number; /* [ntrees] number of the tree at a place */
   uint8_t *owned;    /* [nleaves] bit f: the leaf changes face f of its own */
   int32_t *boundary; /* [nboundary] faces on patches */
   int32_t nboundary;
@@ -108,7 +108,7 @@ static void mark_straddling(struct clean *clean, const struct mesh *mesh) {
   clean->shared = MEM_NEW(double, (size_t)clean->nslots *NCHILD);
 }
 
-/* Curve numbers of the trees by place, from their first leaves. */
+/* Numbers of the trees by place, from their first leaves. */
 static void number_trees(struct clean *clean, const struct mesh *mesh) {
   const struct forest_layout *layout = forest_layout(mesh->forest);
   clean->ntrees = 1;

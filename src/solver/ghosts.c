@@ -12,7 +12,7 @@
 #include "talus/memory.h"
 
 int32_t ghosts_get(struct linking *k, uint64_t key, int level) {
-  int32_t g = table_find(&k->ghosts, key, level);
+  int32_t g = hash_find(&k->ghosts, key, level);
   if (g >= 0) return k->h->nowned + g;
   if (k->nghosts == k->ghost_capacity) {
     count_check((int64_t)k->h->nowned + k->nghosts + 1, INT32_MAX / 2,
@@ -25,13 +25,13 @@ int32_t ghosts_get(struct linking *k, uint64_t key, int level) {
   g = k->nghosts++;
   k->ghost_key[g] = key;
   k->ghost_level[g] = (int8_t)level;
-  table_insert(&k->ghosts, key, level, g);
+  hash_insert(&k->ghosts, key, level, g);
   return k->h->nowned + g;
 }
 
 /* Questions to other ranks, and what they said. */
 struct questions {
-  struct table table; /* (key, level) -> number */
+  struct hash hash; /* (key, level) -> number */
   struct plan_request *request;
   int32_t n, capacity;
   double *answer; /* [n] 1: the node exists */
@@ -46,7 +46,7 @@ static int32_t question_add(struct questions *q, uint64_t key, int level,
         mem_resize(q->request, (size_t)q->capacity, sizeof *q->request);
   }
   q->request[q->n] = (struct plan_request){key, level, rank, q->n};
-  table_insert(&q->table, key, level, q->n);
+  hash_insert(&q->hash, key, level, q->n);
   return q->n++;
 }
 
@@ -67,7 +67,7 @@ static int32_t resolve(struct linking *k, struct questions *q, uint64_t key,
     const int32_t slot = linking_find(k, level, key);
     return slot >= 0 ? slot : get_existing(k, parent, level - 1);
   }
-  int32_t number = table_find(&q->table, key, level);
+  int32_t number = hash_find(&q->hash, key, level);
   if (number < 0) number = question_add(q, key, level, owner);
   if (!q->answer) return SLOT_UNKNOWN;
   return q->answer[number] > 0 ? ghosts_get(k, key, level)
@@ -147,11 +147,11 @@ static void make_plans(struct linking *k, int l) {
 /* Links of the wanted slots that could not be followed. */
 static void find_links(struct linking *k) {
   struct questions q = {.n = 0};
-  table_begin(&q.table, 0);
+  hash_begin(&q.hash, 0);
   resolve_links(k, &q);
   ask(k, &q);
   resolve_links(k, &q);
-  table_end(&q.table);
+  hash_end(&q.hash);
   mem_free(q.request);
   mem_free(q.answer);
 }

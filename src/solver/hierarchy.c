@@ -3,7 +3,7 @@
  *
  * A leaf whose first corner is the first corner of coarser nodes opens the
  * families below them, so one pass over the leaves lists all families in
- * curve order. Parents are found by merging two sorted lists, neighbours from
+ * Morton order. Parents are found by merging two sorted lists, neighbours from
  * the parents' neighbours (links.c); keys are searched for only next to other
  * ranks (ghosts.c). */
 #include "talus/hierarchy.h"
@@ -17,7 +17,7 @@
 
 /* Coarsest level of which a node has its first corner at `key`. */
 static int coarsest_at(uint64_t key) {
-  const uint64_t morton = key & (curve_span(0) - 1);
+  const uint64_t morton = key & (morton_span(0) - 1);
   if (morton == 0) return 0;
   return FOREST_MAX_LEVEL - __builtin_ctzll(morton) / DIM;
 }
@@ -40,7 +40,7 @@ int linking_owner(const struct linking *k, int level, uint64_t key) {
 int32_t linking_find(const struct linking *k, int level, uint64_t key) {
   const struct level *l = &k->h->level[level];
   if (level == 0) {
-    return l->nowned ? l->begin + (int32_t)(key >> CURVE_BITS) : SLOT_UNKNOWN;
+    return l->nowned ? l->begin + (int32_t)(key >> MORTON_BITS) : SLOT_UNKNOWN;
   }
   const uint64_t parent = key_align(key, level - 1);
   const uint64_t *list = k->parent_key[level];
@@ -61,10 +61,10 @@ int linking_place(const struct linking *k, uint64_t key, int level,
                   const int offset[DIM], uint64_t *neighbour) {
   int dropped = 0;
   int64_t x[DIM];
-  curve_coordinates(k->curve, key, x);
+  morton_coordinates(k->brick, key, x);
   for (int d = 0; d < DIM; d++) {
-    const int64_t extent = (int64_t)k->layout->trees[d] * curve_edge(0);
-    const int64_t step = offset[d] * curve_edge(level);
+    const int64_t extent = (int64_t)k->layout->trees[d] * morton_edge(0);
+    const int64_t step = offset[d] * morton_edge(level);
     if (x[d] + step >= 0 && x[d] + step < extent) {
       x[d] += step;
     } else if (k->layout->periodic[d]) {
@@ -73,7 +73,7 @@ int linking_place(const struct linking *k, uint64_t key, int level,
       dropped |= 1 << d;
     }
   }
-  *neighbour = curve_key(k->curve, x);
+  *neighbour = morton_key(k->brick, x);
   return dropped;
 }
 
@@ -136,7 +136,7 @@ static void number_slots(struct linking *k) {
     level->family_begin = (int32_t)families;
     level->nowned =
         count_index(NCHILD * (int64_t)level->nfamilies, "nodes of a level");
-    if (l == 0 && k->rank == 0) level->nowned = k->curve->ntrees;
+    if (l == 0 && k->rank == 0) level->nowned = k->brick->ntrees;
     slots += level->nowned;
     families += level->nfamilies;
     /* with ghosts, virtual children and images, of which each has a slot */
@@ -289,13 +289,13 @@ struct hierarchy *hierarchy_new(const struct mesh *mesh) {
   h->nleaves = mesh->nleaves;
   h->level = MEM_NEW(struct level, h->nlevels);
   struct linking k = {.h = h,
-                      .curve = forest_curve(mesh->forest),
+                      .brick = forest_brick(mesh->forest),
                       .layout = forest_layout(mesh->forest),
                       .first_keys = mesh->first_keys,
                       .rank = mesh->rank,
                       .nranks = mesh->nranks};
   k.parent_key = MEM_NEW(uint64_t *, h->nlevels);
-  table_begin(&k.ghosts, 0);
+  hash_begin(&k.ghosts, 0);
   list_families(&k);
   if (k.nranks > 1) gather_levels(&k);
   number_slots(&k);
@@ -321,7 +321,7 @@ struct hierarchy *hierarchy_new(const struct mesh *mesh) {
   mem_free(k.wanted);
   mem_free(k.ghost_key);
   mem_free(k.ghost_level);
-  table_end(&k.ghosts);
+  hash_end(&k.ghosts);
   return h;
 }
 

@@ -4,14 +4,14 @@
 #define TALUS_SOLVER_LINKING_H
 
 #include "levels.h"
+#include "talus/hash.h"
 #include "talus/morton.h"
-#include "talus/table.h"
 
 enum { SLOT_UNKNOWN = -2 }; /* a node that may be on another rank */
 
 struct linking {
   struct hierarchy *h;
-  const struct curve *curve;
+  const struct brick *brick;
   const struct forest_layout *layout;
   const uint64_t *first_keys;
   int rank, nranks;
@@ -22,7 +22,7 @@ struct linking {
   int8_t *level_of;      /* [nactive] likewise */
   uint8_t *wanted;       /* [nactive] likewise: 1 if its links are needed */
   /* Ghosts, by (key, level) */
-  struct table ghosts;
+  struct hash ghosts;
   uint64_t *ghost_key;
   int8_t *ghost_level;
   int32_t nghosts, ghost_capacity;
@@ -30,11 +30,11 @@ struct linking {
 };
 
 static inline uint64_t key_align(uint64_t key, int level) {
-  return key & ~(curve_span(level) - 1);
+  return key & ~(morton_span(level) - 1);
 }
 /* Child number of a node of level l >= 1. */
 static inline int key_child(uint64_t key, int level) {
-  return (int)(key / curve_span(level)) & (NCHILD - 1);
+  return (int)(key / morton_span(level)) & (NCHILD - 1);
 }
 
 /* Rank that owns the node of `level` at `key`, if it exists. */

@@ -22,7 +22,7 @@ void links_corner_offset(int entry, int offset[DIM]) {
 static void link_trees(struct linking *k) {
   struct hierarchy *h = k->h;
   for (int32_t i = 0; i < h->level[0].nowned; i++) {
-    const uint64_t key = (uint64_t)i << CURVE_BITS;
+    const uint64_t key = (uint64_t)i << MORTON_BITS;
     uint64_t other;
     int offset[DIM];
     for (int f = 0; f < NFACE; f++) {
@@ -114,14 +114,14 @@ static void link_corners(struct linking *k, int l, int32_t family, int c) {
 static void list_keys(struct linking *k) {
   const struct hierarchy *h = k->h;
   for (int32_t i = 0; i < h->level[0].nowned; i++) {
-    k->key[i] = (uint64_t)i << CURVE_BITS;
+    k->key[i] = (uint64_t)i << MORTON_BITS;
     k->level_of[i] = 0;
   }
   for (int l = 1; l < h->nlevels; l++) {
     for (int32_t n = 0; n < h->level[l].nfamilies; n++) {
       for (int c = 0; c < NCHILD; c++) {
         const int32_t i = family_slot(&h->level[l], n, c);
-        k->key[i] = k->parent_key[l][n] + (uint64_t)c * curve_span(l);
+        k->key[i] = k->parent_key[l][n] + (uint64_t)c * morton_span(l);
         k->level_of[i] = (int8_t)l;
       }
     }

@@ -81,7 +81,7 @@ static double space_error(int level, bool adapted) {
   return good ? l2 : NAN;
 }
 
-/* u of the crossed flow at `time` after equal steps, in curve order, for the
+/* u of the crossed flow at `time` after equal steps, in Morton order, for the
  * caller to free; NULL if a step fails or is shorter than asked for. */
 static double *crossed_run(int level, double viscosity, double time,
                            int steps) {
@@ -102,7 +102,7 @@ static double *crossed_run(int level, double viscosity, double time,
 }
 
 /* Root mean square of the difference, `fine` having 2^(2 finer) cells where
- * u has one: cells are in curve order. */
+ * u has one: cells are in Morton order. */
 static double difference(int level, const double *u, int finer,
                          const double *fine) {
   const size_t n = (size_t)1 << (2 * level), m = (size_t)1 << (2 * finer);
