@@ -40,12 +40,14 @@ void properties_density(const struct mesh *mesh, const double density[2],
   mesh_fill_faces(mesh, 1, &alpha_f);
 }
 
-/* Level of the surface in or at leaf i: g.(x_S - Z), from its plane, or from
- * the faces where a full leaf meets an empty one. False if there is none. */
-static bool surface_level(const struct mesh *mesh, const double gravity[DIM],
-                          const double origin[DIM], const double *c,
-                          double *const normal[DIM], const double *plane,
-                          int32_t i, double *level) {
+/* Find the potential g.(x_S - Z) of the surface in or at leaf i, from its plane
+ * or from the faces where a full leaf meets an empty one. Returns false if
+ * there is none. */
+static bool surface_potential(const struct mesh *mesh,
+                              const double gravity[DIM],
+                              const double origin[DIM], const double *c,
+                              double *const normal[DIM], const double *plane,
+                              int32_t i, double *potential) {
   double at[DIM] = {0}, n[DIM];
   int count = 0;
   if (vof_is_cut(c[i])) {
@@ -60,23 +62,23 @@ static bool surface_level(const struct mesh *mesh, const double gravity[DIM],
       count++;
     }
   }
-  *level = 0;
+  *potential = 0;
   if (count == 0) return false;
   for (int d = 0; d < DIM; d++) {
-    *level +=
+    *potential +=
         gravity[d] * (mesh->x[i][d] - origin[d] + mesh->h[i] * at[d] / count);
   }
   return true;
 }
 
-/* Leaves next to one with a level take it over: c interpolated in them, on
- * the coarse side of a jump, feels the surface next door. */
-static void spread_level(const struct mesh *mesh,
-                         const struct balance *balance) {
+/* Give the potential of a leaf with a surface to its neighbours: c interpolated
+ * in them, on the coarse side of a jump of level, feels that surface. */
+static void spread_potential(const struct mesh *mesh,
+                             const struct gravity *gravity) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double level = balance->level[i], count = balance->count[i], near = 0;
+    double potential = gravity->surface[i], count = gravity->count[i], near = 0;
     for (int f = 0; f < NFACE; f++) { /* > 0 in children of a leaf with 1 */
-      near = max2(near, balance->count[mesh->stencil[i][stencil_face(f)]]);
+      near = max2(near, gravity->count[mesh->stencil[i][stencil_face(f)]]);
     }
     const bool search = near > 0 && count == 0;
     for (int f = 0; f < NFACE && search; f++) {
@@ -85,65 +87,67 @@ static void spread_level(const struct mesh *mesh,
       if (node >= mesh->begin_virtual) {
         node = mesh->virtual_leaf[(node - mesh->begin_virtual) / NCHILD];
       }
-      if (balance->count[node] == 0) continue;
-      level += balance->level[node];
-      count += balance->count[node];
+      if (gravity->count[node] == 0) continue;
+      potential += gravity->surface[node];
+      count += gravity->count[node];
     }
-    balance->near_level[i] = count > 0 ? level / count : 0;
-    balance->near_count[i] = count > 0;
+    gravity->near_surface[i] = count > 0 ? potential / count : 0;
+    gravity->near_count[i] = count > 0;
   }
 }
 
-/* W and, where the level was, c, filled as p is; the level next to surfaces. */
+/* Set W and, where the potential was, c, filled as p is; and the potential next
+ * to surfaces. */
 static void set_surface(const struct mesh *mesh, const double density[2],
-                        const struct balance *balance, const double *c,
+                        const struct gravity *gravity, const double *c,
                         double *const normal[DIM], const double *plane) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[] = {neumann, neumann, neumann};
-  double *cells[] = {balance->level, balance->count};
-  double *potentials[] = {balance->weight, balance->level};
-  double *ghosts[] = {balance->near_level, balance->near_count};
+  double *cells[] = {gravity->surface, gravity->count};
+  double *potentials[] = {gravity->weight, gravity->surface};
+  double *ghosts[] = {gravity->near_surface, gravity->near_count};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double weight = 0;
     for (int d = 0; d < DIM; d++) {
-      weight += balance->gravity[d] * (mesh->x[i][d] - balance->origin[d]);
+      weight += gravity->bounded[d] * (mesh->x[i][d] - gravity->origin[d]);
     }
-    balance->weight[i] =
+    gravity->weight[i] =
         weight * (density[1] + c[i] * (density[0] - density[1]));
-    balance->count[i] = surface_level(mesh, balance->gravity, balance->origin,
-                                      c, normal, plane, i, &balance->level[i]);
+    gravity->count[i] =
+        surface_potential(mesh, gravity->bounded, gravity->origin, c, normal,
+                          plane, i, &gravity->surface[i]);
   }
   mesh_fill(mesh, 2, cells, bc, true);
-  spread_level(mesh, balance);
+  spread_potential(mesh, gravity);
   mesh_fill_ghosts(mesh, 2, ghosts);
-  memcpy(balance->level, c, (size_t)mesh->nleaves * sizeof *c);
-  mesh_fill_potential(mesh, balance->rho, 2, potentials, bc, true);
+  memcpy(gravity->surface, c, (size_t)mesh->nleaves * sizeof *c);
+  mesh_fill_potential(mesh, gravity->rho, 2, potentials, bc, true);
 }
 
 void properties_gravity(const struct mesh *mesh, const double density[2],
-                        const struct balance *balance, const double *c,
+                        const struct gravity *gravity, const double *c,
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f) {
-  const double *fraction = balance->level;
-  set_surface(mesh, density, balance, c, normal, plane);
+  const double *fraction = gravity->surface;
+  set_surface(mesh, density, gravity, c, normal, plane);
   for (int d = 0; d < DIM; d++) {
-    const double along = balance->along[d];
+    const double along = gravity->periodic[d];
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f], *leaf = mesh->face_leaf[f];
       if (mesh->face_patch[f] >= 0) {
-        gravity_f[f] = alpha_f[f] > 0 ? balance->gravity[d] + along : 0;
+        gravity_f[f] = alpha_f[f] > 0 ? gravity->bounded[d] + along : 0;
         continue;
       }
       const double jump =
           (density[0] - density[1]) * (fraction[node[1]] - fraction[node[0]]);
-      double level = 0, count = 0;
+      double potential = 0, count = 0;
       for (int side = 0; side < 2 && jump != 0; side++) {
-        level += balance->near_level[leaf[side]];
-        count += balance->near_count[leaf[side]];
+        potential += gravity->near_surface[leaf[side]];
+        count += gravity->near_count[leaf[side]];
       }
-      const double weight = balance->weight[node[1]] -
-                            balance->weight[node[0]] -
-                            (count > 0 ? jump * level / count : 0);
+      const double weight = gravity->weight[node[1]] -
+                            gravity->weight[node[0]] -
+                            (count > 0 ? jump * potential / count : 0);
       gravity_f[f] = along + mesh_slope(mesh, f, alpha_f[f] * weight);
     }
   }

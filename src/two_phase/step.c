@@ -73,23 +73,23 @@ static void end_projection(struct two_phase *sim) {
   scratch_give(&sim->scratch, "projection");
 }
 
-/* Stage 4: density, gravity and viscosity from c^{n+1/2}, D^n, p^{n-1/2}. */
-static struct balance balance_of(const struct two_phase *sim,
-                                 double *const work[5]) {
+/* Describe gravity for properties_gravity, with five arrays of scratch. */
+static struct gravity describe_gravity(const struct two_phase *sim,
+                                       double *const work[5]) {
   const struct params *params = sim->params;
-  struct balance balance = {.rho = sim->rho->v,
+  struct gravity gravity = {.rho = sim->rho->v,
                             .weight = work[0],
-                            .level = work[1],
+                            .surface = work[1],
                             .count = work[2],
-                            .near_level = work[3],
+                            .near_surface = work[3],
                             .near_count = work[4]};
   for (int d = 0; d < DIM; d++) {
     const bool periodic = params->boundary[2 * d].type == BOUNDARY_PERIODIC;
-    balance.gravity[d] = periodic ? 0 : params->gravity[d];
-    balance.along[d] = periodic ? params->gravity[d] : 0;
-    balance.origin[d] = params->origin[d];
+    gravity.bounded[d] = periodic ? 0 : params->gravity[d];
+    gravity.periodic[d] = periodic ? params->gravity[d] : 0;
+    gravity.origin[d] = params->origin[d];
   }
-  return balance;
+  return gravity;
 }
 
 /* p at the nodes as the pressure solve sees it. The density is filled. */
@@ -102,7 +102,7 @@ static void update_density(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double density[2], *normal[DIM], *work[5];
   scratch_take(&sim->scratch, FIELD_CELL, __func__, 5, work);
-  const struct balance balance = balance_of(sim, work);
+  const struct gravity gravity = describe_gravity(sim, work);
   two_phase_densities(sim, density);
   field_arrays(sim->normal, normal);
   field_fill(mesh, sim->c);
@@ -113,7 +113,7 @@ static void update_density(struct two_phase *sim) {
   properties_density(mesh, density, sim->c->v, sim->grid.closed, sim->rho->v,
                      sim->alpha_f->v);
   field_fill(mesh, sim->rho);
-  properties_gravity(mesh, density, &balance, sim->c->v, normal, sim->plane->v,
+  properties_gravity(mesh, density, &gravity, sim->c->v, normal, sim->plane->v,
                      sim->alpha_f->v, sim->gravity_f->v);
   scratch_give(&sim->scratch, __func__);
 }

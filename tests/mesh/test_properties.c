@@ -233,22 +233,22 @@ START_TEST(gravity_on_a_tilted_bed_is_a_gradient) {
   struct field *q = bench_cell(b, "q");
   double *rho = bench_cell(b, "rho")->v, *alpha_f = bench_face(b, "alpha")->v;
   double *gravity_f = bench_face(b, "gravity")->v, most = 0;
-  struct balance balance = {.weight = bench_cell(b, "weight")->v,
-                            .level = bench_cell(b, "level")->v,
+  struct gravity gravity = {.weight = bench_cell(b, "weight")->v,
+                            .surface = bench_cell(b, "surface")->v,
                             .count = bench_cell(b, "count")->v,
-                            .near_level = bench_cell(b, "near_level")->v,
+                            .near_surface = bench_cell(b, "near_surface")->v,
                             .near_count = bench_cell(b, "near_count")->v};
-  for (int d = 0; d < DIM; d++) balance.gravity[d] = -kNormal[d];
+  for (int d = 0; d < DIM; d++) gravity.bounded[d] = -kNormal[d];
   fill_shape(mesh, plane_level_set, NULL, m.c->v);
   field_fill(mesh, m.c);
   vof_reconstruct(mesh, m.c->v, m.normal, m.plane->v);
   properties_density(mesh, kDensity, m.c->v, b->closed, rho, alpha_f);
-  properties_gravity(mesh, kDensity, &balance, m.c->v, m.normal, m.plane->v,
+  properties_gravity(mesh, kDensity, &gravity, m.c->v, m.normal, m.plane->v,
                      alpha_f, gravity_f);
   const double jump = kDensity[0] - kDensity[1], on_surface = -0.5;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double g_x = 0;
-    for (int d = 0; d < DIM; d++) g_x += balance.gravity[d] * mesh->x[i][d];
+    for (int d = 0; d < DIM; d++) g_x += gravity.bounded[d] * mesh->x[i][d];
     q->v[i] = rho[i] * g_x - jump * on_surface * m.c->v[i];
   }
   field_fill(mesh, q);

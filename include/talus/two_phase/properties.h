@@ -50,21 +50,21 @@ void properties_density(const struct mesh *mesh, const double density[2],
                         const double *c, const bool *closed, double *rho,
                         double *alpha_f);
 
-struct balance {
-  double gravity[DIM]; /* along axes that are not periodic, m/s^2 */
-  double along[DIM];   /* along periodic axes */
-  double origin[DIM];  /* Z, anywhere in the box */
-  const double *rho;   /* [ncells] filled, by which p is; NULL: as if even */
+struct gravity {
+  double bounded[DIM];  /* along axes that are not periodic, m/s^2 */
+  double periodic[DIM]; /* along periodic axes */
+  double origin[DIM];   /* Z, anywhere in the box */
+  const double *rho;    /* [ncells] filled, by which p is; NULL: as if even */
   /* scratch [ncells]: W; g.(x_S - Z) and 1 in leaves with a surface, else 0;
    * the same with the leaves next to them */
-  double *weight, *level, *count, *near_level, *near_count;
+  double *weight, *surface, *count, *near_surface, *near_count;
 };
 
 /* Gravity a_f on faces [nfaces_all], m/s^2, 0 on closed patches. c filled;
  * normal, plane: the planes of cut leaves (vof_reconstruct); alpha_f as
  * above. Collective. */
 void properties_gravity(const struct mesh *mesh, const double density[2],
-                        const struct balance *balance, const double *c,
+                        const struct gravity *gravity, const double *c,
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f);
 
