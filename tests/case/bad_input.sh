@@ -2,15 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Whatever is wrong with a case or a command line gives one message that says
 # what and where, exit status 2, and leaves no file. Usage: bad_input.sh BUILD
-set -u
 . "$(dirname "$0")/common.bash"
-build=$(cd "$1" && pwd) || exit 1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-limit=$((60 * ${TIME_FACTOR:-1})) # seconds for one run
 mkdir cases work
-failures=0
 
 # A sound case: line 2 is the domain, 4 the grains, 5 the shape.
 good='return { dimension = 2,
@@ -22,12 +15,6 @@ good='return { dimension = 2,
   boundary = { left = "symmetry", right = "no_slip", bottom = "no_slip",
     top = { "outflow", pressure = 0 } },
   output = { stop = 1 } }'
-
-complain() {
-  echo "$1"
-  sed 's/^/  /' output
-  failures=$((failures + 1))
-}
 
 # refuses NAME PATTERN ARGUMENTS...: the program, started in work/, ends with
 # status 2, writes nothing, and its one message matches PATTERN

@@ -2,27 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # --restart refuses a checkpoint that is not what was written, says what is
 # wrong with it, and touches nothing. Usage: checkpoint.sh BUILD
-set -u
 . "$(dirname "$0")/common.bash"
-root=$(pwd)
-build=$(cd "$1" && pwd) || exit 1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-limit=$((60 * ${TIME_FACTOR:-1})) # seconds for one run
 column="$root/examples/column.lua level=6 stop=2"
-failures=0
 
 if ! command -v python3 > /dev/null; then
   echo "there is no python3"
   exit 77
 fi
-
-complain() {
-  echo "$1"
-  sed 's/^/  /' output
-  failures=$((failures + 1))
-}
 
 # listing DIR: names, sizes, times of last change and sums of all files
 listing() {

@@ -2,11 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # tests/convergence/run.sh: its status and last line say what the cases did.
 # Programs made here stand in for them. Usage: convergence.sh BUILD
-set -u
-root=$(pwd)
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-failed=0
+. "$(dirname "$0")/common.bash"
 mkdir "$directory/2d" "$directory/3d"
 
 cat > "$directory/2d/convergence" << 'PROGRAM'
@@ -38,14 +34,11 @@ chmod +x "$directory"/?d/convergence
 expect() {
   local status text=$2 wanted=$1
   shift 2
-  CASE_TIMEOUT=1 "$root/tests/convergence/run.sh" "$@" > "$directory/output" \
-    2>&1
+  CASE_TIMEOUT=1 "$root/tests/convergence/run.sh" "$@" > output 2>&1
   status=$?
   [ "$status" -eq "$wanted" ] &&
-    tail -n 1 "$directory/output" | grep -q -- "$text" && return
-  echo "run.sh $*: status $status, not $wanted, or not '$text':"
-  cat "$directory/output"
-  failed=1
+    tail -n 1 output | grep -q -- "$text" && return
+  complain "run.sh $*: status $status, not $wanted, or not '$text'"
 }
 
 expect 0 "2 cases, 2 rows, 2 within their bars, 0 failed" "$directory" good cube
@@ -56,4 +49,5 @@ done
 expect 2 "there is no case nothing" "$directory" good nothing
 rm "$directory/3d/convergence"
 expect 2 "not built" "$directory" good
-exit "$failed"
+
+[ "$failures" -eq 0 ]

@@ -2,21 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # How a run ends by itself: at rest, as its steps become too short, as there is
 # no memory for it; and that it is heard of before. Usage: ends.sh BUILD
-set -u
 . "$(dirname "$0")/common.bash"
-root=$(pwd)
-build=$(cd "$1" && pwd) || exit 1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
-failures=0
-
-complain() {
-  echo "$1"
-  sed 's/^/  /' output
-  failures=$((failures + 1))
-}
 
 # ends STATUS PATTERN ARGUMENTS...: talus ends with it and says so
 ends() {

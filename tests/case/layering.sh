@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # tools/check_includes.py finds one violation of each rule, and nothing in the
-# clean file beside them.
-set -euo pipefail
-tree=$(mktemp -d)
-trap 'rm -rf "$tree"' EXIT
+# clean file beside them. Usage: layering.sh BUILD
+. "$(dirname "$0")/common.bash"
+set -eo pipefail
+tree=$directory
 mkdir -p "$tree"/tree "$tree"/src/{base,geometry,flow,io,two_phase,command} \
   "$tree"/include/talus/two_phase
 spdx='/* SPDX-License-Identifier: GPL-3.0-or-later */'
@@ -46,7 +46,7 @@ src/two_phase/step.c:4: <hdf5.h> may be included by io only
 src/two_phase/step.c:5: #if DIM is for geometry and tree only
 src/two_phase/step.c:8: free() is for base only'
 
-found=$(python3 tools/check_includes.py "$tree" | sort) && exit 1
+found=$(python3 "$root/tools/check_includes.py" "$tree" | sort) && exit 1
 while IFS= read -r line <&3 && IFS= read -r want <&4; do
   case $line in
     "$want"*) ;;

@@ -4,42 +4,29 @@
 # program, starts, adapts its grid, is stopped and goes on to the last bit, and
 # is drawn; keys and checkpoints of one model are refused by the other.
 # Usage: models.sh BUILD
-set -u
 . "$(dirname "$0")/common.bash"
-root=$(pwd)
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one command
 case=$root/tests/model/given_flow.lua
-failures=0
-
-complain() {
-  echo "$1"
-  sed 's/^/  /' "$directory/output"
-  failures=$((failures + 1))
-}
 
 # ends STATUS COMMAND...
 ends() {
   local want=$1 status
   shift
-  timeout "$limit" "$@" > "$directory/output" 2>&1
+  timeout "$limit" "$@" > output 2>&1
   status=$?
   [ $status -eq "$want" ] || complain "$*: exit status $status, not $want"
 }
 
 # says WORDS: the last command did
 says() {
-  own_words < "$directory/output" | tr '\n' ' ' | grep -qF -- "$1" ||
+  own_words < output | tr '\n' ' ' | grep -qF -- "$1" ||
     complain "it does not say: $1"
 }
 
 # The objects are those of BUILD, but for the list of models.
-mkdir "$directory/build" && cp -a "$1/2d" "$1/flags" "$directory/build"
+mkdir build && cp -a "$build/2d" "$build/flags" build
 ends 0 make -C "$root" BUILD="$directory/build" MODE="${MODE:-release}" \
   MODELS=tests/model/given_flow.c "$directory/build/talus2d"
 talus=$directory/build/talus2d
-cd "$directory" || exit 1
 [ -x "$talus" ] || exit 1
 
 for ranks in 1 2; do
@@ -95,4 +82,5 @@ ends 0 "$talus" run $column -o column --quiet
 cp column/checkpoint.h5 whole1/checkpoint.h5
 ends 2 "$talus" run "$case" -o whole1 --restart
 says 'belongs to a run of model = "two_phase"'
-exit $((failures > 0))
+
+[ "$failures" -eq 0 ]

@@ -3,13 +3,7 @@
 # Openings narrower than the coarse grid: a jet brings in W V t, an outlet is
 # there when a restart opens it, and one that no grid can show is refused.
 # Usage: openings.sh BUILD
-set -u
-build=$(cd "$1" && pwd) || exit 1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-failures=0
+. "$(dirname "$0")/common.bash"
 
 cat > jet.lua <<'END'
 local W = param("W", 0.25, "width")
@@ -52,15 +46,9 @@ return {
 }
 END
 
-complain() {
-  echo "$1"
-  sed 's/^/  /' output
-  failures=$((failures + 1))
-}
-
 # must ARGUMENTS...: talus has to succeed
 must() {
-  timeout 120 "$build/talus" "$@" > output 2>&1 ||
+  timeout "$limit" "$build/talus" "$@" > output 2>&1 ||
     complain "talus $*: exit status $?"
 }
 
@@ -68,7 +56,7 @@ must() {
 refuses() {
   local pattern=$1 status
   shift
-  timeout 120 "$build/talus" "$@" > output 2>&1
+  timeout "$limit" "$build/talus" "$@" > output 2>&1
   status=$?
   [ "$status" -eq 2 ] || complain "talus $*: exit status $status, not 2"
   grep -qE "^talus: error: .*$pattern" output ||
@@ -129,4 +117,5 @@ must run outlet.lua W=0.1 --quiet -o out
 must run outlet.lua W=0.1 open=true stop=0.4 --restart --quiet -o out
 says outlet out/run.log 'boundary.patches.outlet covers 0.1 m of bottom, 1 faces'
 within "outlet" "$(last out 7)" 7.495 0.004
-exit $((failures > 0))
+
+[ "$failures" -eq 0 ]

@@ -2,20 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Snapshots are what their XDMF index says, pictures and film are made, and
 # outlines are compared as documented. Usage: plot.sh BUILD
-set -u
 . "$(dirname "$0")/common.bash"
-root=$(pwd)
-build=$(cd "$1" && pwd) || exit 1
 export TALUS_TOOLS=$root/tools
-for python in "${PYTHON:-python3}" python3 /usr/bin/python3; do
-  "$python" -c 'import h5py, matplotlib' 2> /dev/null && break
-  python=
-done
-[ -n "$python" ] || { echo "no Python with h5py and matplotlib"; exit 77; }
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
+find_python
 
 set -e
 timeout "$limit" "$build/talus2d" run "$root/examples/column.lua" level=7 stop=3 \
@@ -84,9 +73,9 @@ fi
 sed 's/return math.min(width - x, height - y)/return -1/
   s/  tracers = {/&\n    floor = function(x, y) return 1 - y end,/' \
   "$root/examples/column.lua" > empty.lua
-timeout 120 "$build/talus" run empty.lua level=5 stop=0.1 -o empty --quiet \
+timeout "$limit" "$build/talus" run empty.lua level=5 stop=0.1 -o empty --quiet \
   2> output
-timeout 120 "$build/talus" plot empty > output 2>&1
+timeout "$limit" "$build/talus" plot empty > output 2>&1
 grep -q "no history.png, as there are no grains" output || {
   echo "an empty box:"
   cat output

@@ -2,15 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Under mpirun what is said is said once, and the exit status comes through.
 # Usage: ranks.sh BUILD
-set -u
 . "$(dirname "$0")/common.bash"
-root=$(pwd)
-build=$(cd "$1" && pwd) || exit 1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
-failures=0
 
 # once STATUS PATTERN ARGUMENTS...: talus on three ranks ends with this status,
 # and exactly one line of what it says matches

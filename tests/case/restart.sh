@@ -3,25 +3,11 @@
 # A run that is stopped and goes on writes what one in one piece writes; a
 # checkpoint that does not fit is refused; a full disk costs no checkpoint.
 # Usage: restart.sh BUILD
-set -u
 . "$(dirname "$0")/common.bash"
-root=$(pwd)
-build=$(cd "$1" && pwd) || exit 1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-limit=$((120 * ${TIME_FACTOR:-1})) # seconds for one run
 shape="$root/examples/column.lua level=7 times=0.1,0.66"
 column="$shape stop=2"
 endless="$shape stop=1e4"
 box="$root/examples/box3d.lua level=4 stop=0.5"
-failures=0
-
-complain() {
-  echo "$1"
-  sed 's/^/  /' output
-  failures=$((failures + 1))
-}
 
 # talus RANKS PROGRAM ARGUMENTS...
 talus() {

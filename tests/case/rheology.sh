@@ -1,14 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What `talus rheology` prints. Usage: rheology.sh BUILD
-set -u
-talus=$(cd "$1" && pwd)/talus || exit 1
-failures=0
-
-complain() {
-  echo "$1"
-  failures=$((failures + 1))
-}
+. "$(dirname "$0")/common.bash"
+talus=$build/talus
 
 # says PATTERN ARGUMENTS...: a line of the output matches
 says() {

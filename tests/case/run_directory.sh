@@ -2,24 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A run takes its directory for itself, leaves alone what is not its own, and
 # says so when the directory is taken away. Usage: run_directory.sh BUILD
-set -u
-root=$(pwd)
-build=$(cd "$1" && pwd) || exit 1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+. "$(dirname "$0")/common.bash"
 column="$root/examples/column.lua level=5 stop=0.5 times=0.5"
 # without snapshots, so that a directory is missed at the end of a step
 sed 's/snapshot_every *= *[0-9.]*,*//' "$root/examples/column.lua" > endless.lua
 endless="endless.lua level=5 stop=1e4 times=0.5"
-failures=0
-
-complain() {
-  echo "$1"
-  sed 's/^/  /' output
-  failures=$((failures + 1))
-}
 
 # ends NAME STATUS PATTERN RANKS ARGUMENTS...: talus run ends with this status,
 # and what it says matches the pattern
@@ -27,9 +14,9 @@ ends() {
   local name=$1 wanted=$2 pattern=$3 ranks=$4 status
   shift 4
   if [ "$ranks" -eq 1 ]; then
-    timeout 120 "$build/talus" run "$@" > output 2>&1
+    timeout "$limit" "$build/talus" run "$@" > output 2>&1
   else
-    timeout 120 mpirun --oversubscribe -n "$ranks" "$build/talus2d" run "$@" \
+    timeout "$limit" mpirun --oversubscribe -n "$ranks" "$build/talus2d" run "$@" \
       > output 2>&1
   fi
   status=$?

@@ -3,13 +3,7 @@
 # A restart with other conditions is a new start: a silo at rest is opened, a
 # jet is let in, gravity turns; dt, loss, inflow and the energy are right.
 # Usage: sudden.sh BUILD
-set -u
-build=$(cd "$1" && pwd) || exit 1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-failures=0
+. "$(dirname "$0")/common.bash"
 
 cat > bin.lua <<'EOF'
 local open, jet = param("open", false, "outlet"), param("jet", 0, "its speed")
@@ -49,11 +43,11 @@ go() {
   local name=$1
   shift
   cp -r still "$name"
-  timeout 100 "$build/talus2d" run bin.lua "$@" --restart --quiet -o "$name" \
+  timeout "$limit" "$build/talus2d" run bin.lua "$@" --restart --quiet -o "$name" \
     > output 2>&1 || { cat output; failures=$((failures + 1)); }
 }
 
-timeout 100 "$build/talus2d" run bin.lua --quiet -o still || exit 1
+timeout "$limit" "$build/talus2d" run bin.lua --quiet -o still || exit 1
 go opened open=true stop=4
 go poured jet=1 stop=1.5
 go tilted tilt=0.5 stop=1.1

@@ -2,18 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # tools/sweep.py: parameters that are expressions, power laws over one range
 # and two, runs that end badly or before their time. Usage: sweep.sh BUILD
-set -u
-root=$(pwd)
-build=$(cd "$1" && pwd) || exit 1
-for python in "${PYTHON:-python3}" python3 /usr/bin/python3; do
-  "$python" -c 'import h5py, matplotlib' 2> /dev/null && break
-  python=
-done
-[ -n "$python" ] || { echo "no Python with h5py and matplotlib"; exit 77; }
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory" || exit 1
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+. "$(dirname "$0")/common.bash"
+find_python
 
 # A program that plays talus: run-out 3 a up to a = 2, 3 2^(1/3) a^(2/3)
 # beyond, height a^0.4. It notes its runs in `calls` and ends with the status
