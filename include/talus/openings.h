@@ -7,11 +7,9 @@
  * where boundaries meet on a side, or to an inflow or outflow that covers at
  * most half of its side. A larger one, the open air beside a jet, is the same
  * all over, and away from its ends a coarse face does as well; so is a side
- * that is open as a whole. What asks for cells is a function of position, so
- * the grid there stays as it is. Flow converges on an outlet in the distance
- * of a few widths: with cells fine at its faces only, the silo of examples/
- * without refinement inside loses 10 % of its rate, with a distance of 2, 4, 6
- * edges 3, 0.7, 0.4 % (at most, of its three narrowest outlets, level 7).
+ * that is open as a whole. The level asked for is a function of position, so
+ * the grid there stays as it is. Cells at the faces alone would not do, as flow
+ * converges on an outlet over a few widths (docs/notes/openings.md).
  *
  * Faces. A face that an inflow shares with others is the inflow's, and its
  * velocity is the mean sum_j part_j u_j over the parts of its area (a wall or

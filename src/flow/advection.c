@@ -6,9 +6,8 @@
 #include "talus/minmax.h"
 #include "talus/momentum.h"
 
-/* Of the generalised minmod. A square carried at an angle leaves [0, 1] by
- * 0 at 1.2, 9e-5 at 1.3, 7e-4 at 1.5, 9e-3 at 2 (and 1e-3 with van Leer's
- * harmonic mean); the error of a vortex falls by 10 % per step of 0.1. */
+/* Generalised minmod takes at most this times the smaller difference
+ * (docs/notes/limiter.md). */
 #define LIMITER_FACTOR 1.3
 
 /* Slope of a leaf from the differences to its lower and upper neighbour. */

@@ -1,9 +1,50 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The time step of the two-phase incompressible model: step_advance
- * and advance_state are the table of contents of the scheme, each call one
- * stage of it.
+/* The time step of the two-phase model, from t^n to t^n + dt.
  *
- * Invariants, between steps
+ * It begins with u^n in cells and u_f^n on faces, and half a step earlier with
+ * c, p, g = gravity - grad p/rho, and v, the acceleration by viscosity. [x]_d
+ * is x on the upper less x on the lower side of a leaf along axis d, A a mean
+ * over its two faces across an axis. In the order of the calls:
+ *
+ * time_step_choose     dt, by the flow and the bounds of the case
+ * fractions_advance    over dt_c, the mean of the last dt and this one, and
+ *                      along each axis d in turn
+ *     c <- c - dt_c/h [F]_d + cc dt_c/h [u_f^n]_d
+ *     rho u <- rho u - dt_c/h [M u^up]_d + rho_cc u^n dt_c/h [u_f^n]_d
+ *   F and M: fluxes of grains and of mass, from the planes of the surface; cc
+ *   is 1 where c > 1/2 at first; the second line in the band beside the surface
+ *   only (vof.h, momentum.h)
+ * percolation_advance  the same with w in place of u_f^n, for enclosed gas q
+ *     w = grad psi,  div w = q
+ * update_density
+ *     rho = c rho_1 + (1 - c) rho_2,  alpha_f = 1/rho_f
+ *     gravity_f = grad of the weight, less that of the surface, over rho_f
+ * update_acceleration  where there are grains
+ *     g = A(gravity_f - alpha_f grad p)
+ * update_viscosity
+ *     eta_f = both phases in series, eta_1 of the shear rate of u^n and of p
+ * advect_momentum      away from the band
+ *     u^{n+1/2} = u^n + dt/2 (g - u^n.grad u^n), upwind, on faces
+ *     u_f^{n+1/2} = its normal part less dt/2 alpha_f grad phi, solenoidal
+ *     u <- u - dt/h sum_d [u_f^{n+1/2} (u^{n+1/2} - u^n)]_d
+ * and, once or repeatedly with eta_f of the latest u and p (repeat_properties),
+ * diffuse_momentum
+ *     (rho + dt drag) u* - theta dt div(2 eta D(u*))
+ *         = rho (u + dt g) + (1 - theta) dt div(2 eta D(u^n))
+ *     v = (u* - u)/dt - g + drag/rho u*
+ *     u* <- u* - dt g
+ * project
+ *     u_f = mean of u* on both sides, by mass, + dt gravity_f
+ *     div(alpha_f grad p) = div u_f/dt
+ *     u_f^{n+1} = u_f - dt alpha_f grad p
+ *     g = A(gravity_f - alpha_f grad p)
+ *     u^{n+1} = u* + dt g
+ * then
+ * viscous_work_add     what viscosity has taken from grains and gas
+ * two_phase_adapt      if the surface has moved far enough
+ * clean_face_velocity  div u_f^{n+1} = 0 to round-off
+ *
+ * Invariants between steps
  * 1. c, tracers, u, u_f, p, g are valid on leaves (u_f on all faces); ghosts
  *    and helper nodes of cell fields are not: every stage fills what it reads.
  *    Within a step u_old, which does not change, is filled.
@@ -35,21 +76,21 @@
 #include "talus/viscous.h"
 #include "talus/vof.h"
 
-/* A stalled solve passes within this factor of its tolerance, or below the
- * second number, where round-off may be. */
+/* A stalled solve passes within STALL_SLACK times its tolerance, or below
+ * STALL_FLOOR, where round-off may be. */
 #define STALL_SLACK 10
 #define STALL_FLOOR 1e-10
 
-/* Leaves with more grains than this take their g from the last pressure. The
- * speed of dense_square at 1e6 is then off by 1e-5; by 1e-3 with 1e-6 instead,
- * 1.6e-2 with all leaves. */
+/* Leaves with more grains than this take their g from the last pressure; in the
+ * others the pressure of grains that have just left would do too much
+ * (docs/notes/surface.md). */
 #define HOLDS_GRAINS 0.01
 
-/* A divergence below this part of the rates of flow is round-off. */
+/* A divergence below this part of the rate of flow is round-off. */
 #define SOLENOIDAL 1e-12
 
-/* A step that fails is repeated so often, each time with this part of dt; one
- * that is too long for what it finds so often. */
+/* A failed step is repeated at most RETRIES times, each time with dt reduced by
+ * RETRY_FACTOR; a step too long for the flow it finds, SHORTENINGS times. */
 enum { RETRIES = 3, SHORTENINGS = 30 };
 #define RETRY_FACTOR 0.25
 
@@ -92,7 +133,7 @@ static struct gravity describe_gravity(const struct two_phase *sim,
   return gravity;
 }
 
-/* p at the nodes as the pressure solve sees it. The density is filled. */
+/* Fill p as the pressure solve does. The density is filled. */
 static void fill_pressure(struct two_phase *sim) {
   const struct bc *bc = sim->p->bc;
   mesh_fill_potential(sim->grid.mesh, sim->rho->v, 1, &sim->p->v, &bc, false);
@@ -118,7 +159,7 @@ static void update_density(struct two_phase *sim) {
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Find g [nleaves] of the flux of a projection. */
+/* Set g [nleaves] from the flux of a projection. */
 static void set_acceleration(struct two_phase *sim,
                              const struct projection *projection,
                              double *const g[DIM]) {
@@ -127,7 +168,7 @@ static void set_acceleration(struct two_phase *sim,
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Find g of the last pressure with density, gravity and boundaries as they are.
+/* Find g of the last pressure with the present density, gravity and boundaries.
  */
 static void find_acceleration(struct two_phase *sim, double *const g[DIM]) {
   const struct projection projection = begin_projection(sim);
@@ -137,9 +178,9 @@ static void find_acceleration(struct two_phase *sim, double *const g[DIM]) {
   end_projection(sim);
 }
 
-/* Give leaves that hold grains this g: what the projection then changes of g,
- * the viscous solve has not seen. In gas that grains have just left their
- * pressure would do far too much (dense_square), so it keeps its g. */
+/* Renew g in leaves that hold grains, so that the viscous solve sees nearly the
+ * g that the projection will find. Gas keeps its g: where grains have just
+ * left, their pressure would accelerate gas far too much. */
 static void update_acceleration(struct two_phase *sim) {
   double *g[DIM];
   if (sim->params->single_phase) return;
@@ -153,7 +194,7 @@ static void update_acceleration(struct two_phase *sim) {
   scratch_give(&sim->scratch, __func__);
 }
 
-/* The velocity is filled. */
+/* Set eta_f from a velocity, which is filled, and p. */
 static void update_viscosity(struct two_phase *sim,
                              struct field *const velocity[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -171,8 +212,8 @@ static void update_viscosity(struct two_phase *sim,
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Make u_f solenoidal by a pressure of its own: to the tolerance by a
- * projection over dt, then to round-off by cleaning. */
+/* Make u_f solenoidal: to the tolerance by a projection over dt with a pressure
+ * that starts from 0, then to round-off by cleaning. */
 static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
                                           double *u_f) {
   struct projection projection = begin_projection(sim);
@@ -189,10 +230,10 @@ static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
   return stats;
 }
 
-/* What the predictor sees besides inertia: g, and with Crank-Nicolson what
- * viscosity and walls did in the last step, without which this one is of first
- * order in time. It is bounded, as an implicit solve has made it. Filled;
- * scratch that advect_momentum gives back. */
+/* Take scratch for the acceleration g that the predictor of Crank-Nicolson
+ * needs to be of second order in time, and fill it: pressure and gravity, with
+ * what viscosity and walls did in the last step. advect_momentum gives it back.
+ */
 static void predictor_acceleration(struct two_phase *sim, double *g[DIM]) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[DIM];
@@ -229,8 +270,7 @@ static void end_advection(struct two_phase *sim) {
   scratch_give(&sim->scratch, "advection");
 }
 
-/* Stage 5: u_f at half steps, made exactly solenoidal, carries momentum away
- * from the interface. */
+/* Carry momentum away from the band with a solenoidal u_f at half steps. */
 static void advect_momentum(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const bool viscous = sim->params->theta < 1;
@@ -255,9 +295,7 @@ static void advect_momentum(struct two_phase *sim, double dt) {
   if (viscous) scratch_give(&sim->scratch, "predictor");
 }
 
-/* Stage 6: rho u* - theta dt div(2 eta D(u*)) = rho (u + dt g)
- * + (1 - theta) dt div(2 eta D(u^n)); g then leaves u* again, the projection
- * brings the new one. */
+/* Set the right hand side of the viscous equation. */
 static void viscous_rhs(struct two_phase *sim, double dt,
                         double *const rhs[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -276,7 +314,7 @@ static void viscous_rhs(struct two_phase *sim, double dt,
   }
 }
 
-/* Largest speed, or what gravity would make of rest in this step. */
+/* Find the largest speed of the flow, the boundaries and free fall over dt. */
 static double velocity_scale(const struct two_phase *sim, double dt) {
   double most = max2(1e-300, time_step_boundary_speed(sim, false));
   for (int d = 0; d < DIM; d++) {
@@ -318,9 +356,8 @@ static const double *mass_with_walls(struct two_phase *sim, double dt) {
   return mass;
 }
 
-/* Of u* + dt g + dt (viscous acceleration of the last step), which less the
- * friction of the walls is the first guess, the solve makes the new velocity
- * and acceleration. */
+/* Solve the viscous equation for u* and v. The guess is u + dt (g + v) with v
+ * of the last step, less the friction of the walls. */
 static void diffuse_momentum(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct params *params = sim->params;
@@ -357,8 +394,8 @@ static void diffuse_momentum(struct two_phase *sim, double dt) {
   if (sim->drag) scratch_give(&sim->scratch, "mass");
 }
 
-/* Stage 8: before repetition k, viscosity from the latest u and p; the advected
- * velocity, kept from the first on, is set back. */
+/* Keep the advected velocity (k = 0), or set u back to it before repetition k
+ * and renew the viscosity from the latest u and p. */
 static void repeat_properties(struct two_phase *sim, int k,
                               double *advected[DIM]) {
   const size_t bytes = (size_t)sim->grid.mesh->nleaves * sizeof(double);
@@ -376,8 +413,8 @@ static void repeat_properties(struct two_phase *sim, int k,
   if (k == sim->params->picard) scratch_give(&sim->scratch, "advected");
 }
 
-/* How far repetition k has moved u_f from what turn_face_velocity has kept in
- * last. */
+/* Measure how far repetition k has moved u_f from `last`, which
+ * turn_face_velocity has kept. */
 static void measure_repetition(struct two_phase *sim, int k,
                                const double *last) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -392,8 +429,8 @@ static void measure_repetition(struct two_phase *sim, int k,
            (long long)sim->model.step, k, sim->repeat_change, sim->scale);
 }
 
-/* Solves of one step: the iterations of both, and the worse of the two, so
- * that a repetition that converges does not hide one that did not. */
+/* Add the iterations of an earlier solve of the step, and keep the worse result
+ * of the two: a repetition that converges must not hide one that did not. */
 static void add_solve(struct solve_stats *last,
                       const struct solve_stats *before) {
   const int iterations = last->iterations + before->iterations;
@@ -414,10 +451,9 @@ static void add_wall_work(struct two_phase *sim, double dt) {
       dt * side_walls_power(sim->grid.mesh, sim->drag->v, u);
 }
 
-/* Room for the new u_f. The first takes that of the predictor, which has done
- * its work, and leaves the last step's there, should this one fail (u_f->old).
- * A repetition overwrites the new one, and keeps a copy of it, which is
- * returned, to be compared. */
+/* Make room for the new u_f. The first solve writes into the array of u_half
+ * and leaves u_f of the last step there, in case this step fails (u_f->old). A
+ * repetition writes over the new u_f; returns a copy of it from before. */
 static const double *turn_face_velocity(struct two_phase *sim, int k) {
   double *last = sim->u_f->v;
   if (k > 0) {
@@ -431,7 +467,7 @@ static const double *turn_face_velocity(struct two_phase *sim, int k) {
   return NULL;
 }
 
-/* Stage 7: u^{n+1}, u_f^{n+1}, p^{n+1/2}; repetition k of it. */
+/* Find p, u_f and u at the end of the step; k counts repetitions. */
 static void project(struct two_phase *sim, double dt, int k) {
   const struct mesh *mesh = sim->grid.mesh;
   const double *last = turn_face_velocity(sim, k);
@@ -466,7 +502,7 @@ static void set_cell_viscosity(struct two_phase *sim) {
   }
 }
 
-/* Stage 9: how many cells the surface, or the flow, may have moved. */
+/* Add how many cells the surface, or the flow, may have moved. */
 static void add_travel(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const bool everywhere = follows_velocity(sim->params);
@@ -481,8 +517,8 @@ static void add_travel(struct two_phase *sim, double dt) {
   sim->travel += mesh_max(mesh, travel);
 }
 
-/* A solve that stalls at round-off, close to its tolerance, is good enough;
- * one that stalls far from it is not. */
+/* Is a solve good enough? One that stalls at round-off or close to its
+ * tolerance is, one that stalls far from it is not. */
 static bool is_solved(const struct solve_stats *stats, double tolerance) {
   return stats->status == SOLVE_CONVERGED ||
          (stats->status == SOLVE_STALLED &&
@@ -517,12 +553,12 @@ static bool has_failed(const struct two_phase *sim) {
   return failed;
 }
 
-/* The time since the last call was spent on this stage. */
+/* Count the time since the last call for this stage. */
 static void lap(struct two_phase *sim, enum step_stage stage) {
   stopwatch_lap(&sim->model.stopwatch, stage);
 }
 
-/* Stages 3 to 8: the state at `time` + dt. */
+/* Advance the state from `time` to `time` + dt; rate: of time_step_choose. */
 static void advance_state(struct two_phase *sim, double dt, double rate) {
   const double dt_c = 0.5 * (sim->model.dt + dt);
   fractions_advance(sim, dt_c, rate);
@@ -544,8 +580,7 @@ static void advance_state(struct two_phase *sim, double dt, double rate) {
   add_wall_work(sim, dt);
 }
 
-/* Set back the state to that before the step; `before` has what fields_save
- * does not. */
+/* Set the state back to that before the step; `before` has the scalars. */
 static void set_back(struct two_phase *sim, const struct two_phase *before) {
   fields_restore(&sim->grid.fields, sim->grid.mesh);
   sim->planes_hold = false;
@@ -561,8 +596,8 @@ static void drop_half(struct two_phase *sim) {
   sim->u_half->v = NULL;
 }
 
-/* Take a step of at most dt_max, as short as it has to be; returns its dt, or
- * 0, the state being that before the step. */
+/* Take a step of at most dt_max, as short as need be; returns its dt, or 0 with
+ * the state before the step. */
 static double find_step(struct two_phase *sim, double dt_max) {
   const struct two_phase before = *sim;
   int failures = 0;
@@ -606,7 +641,7 @@ int step_advance(struct two_phase *sim, double dt_max) {
   return EXIT_DONE;
 }
 
-/* Pressure and acceleration of the state at rest, without viscosity. */
+/* Find pressure and acceleration of the grains at rest, without viscosity. */
 static struct solve_stats static_pressure(struct two_phase *sim) {
   struct projection projection = begin_projection(sim);
   double *rest[DIM], *g[DIM], size = 0;

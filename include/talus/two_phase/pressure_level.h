@@ -9,21 +9,19 @@
  * The mean over the box contains the weight of the grains, about rho g H/2
  * times the part of the box that they fill, and changes as they fall: a column
  * that collapses is then too stiff or too loose throughout. Gas is under one
- * pressure but for its own weight, and with that taken off a closed box is one
- * that is open at the top with the same pressure. That weight matters, as a
- * front is thin: column of height 1.5 and width 1 in a box of edge 4, ratio
- * 1e-3, level 7, front at t = 6: open 3.7453, closed 3.7448; with the plain
- * mean over the gas 3.783, with that over the box 4, the wall.
+ * pressure but for its own weight; with that taken off, a closed box is one
+ * that is open at the top with the same pressure. Even the weight of the gas
+ * counts, as a front is thin (docs/notes/pressure_level.md).
  */
 #ifndef TALUS_TWO_PHASE_PRESSURE_LEVEL_H
 #define TALUS_TWO_PHASE_PRESSURE_LEVEL_H
 
 struct two_phase;
 
-/* Add to p on leaves the constant that the case asks for; nothing where a
- * boundary sets the pressure. Where no leaf holds gas only, gas in mixed ones
- * counts; where there is none at all the mean over the box, with a warning.
- * p is left valid on leaves only. Collective. */
+/* Add to p on leaves the constant that the case asks for; do nothing where a
+ * boundary sets the pressure. Where no leaf holds gas only, the gas in mixed
+ * leaves counts, and without any gas the mean over the box, with a warning. p
+ * is left valid on leaves only. Collective. */
 void pressure_level_set(struct two_phase *sim);
 
 #endif

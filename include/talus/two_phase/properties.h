@@ -3,36 +3,36 @@
  *
  *   rho = c rho_1 + (1 - c) rho_2              [lagree_staron_popinet_2011,
  *   eta = 1 / (c/eta_1 + (1 - c)/eta_2)         eqs. 2.7, 2.8]
- * The density of a face is the mean of those of its two leaves, over levels
- * too: a face between light leaves may not be heavy (projection.h). The
- * viscosity of a face takes the part theta of the line between its nodes that
- * lies below the planes of the two leaves: phases in series, as a layer sheared
- * along its surface feels them. The mean of c would put gas between a cut
- * cell more than half full and the grains below it, and the top layer would
- * slide. For the same reason a node starts in the phase that has most of the
- * mass of its leaf, as the velocity is that one's: at the surface if its centre
- * is on the other side. Cut leaves less than half full would else lie on a
- * cushion of gas: the surface of a heap at rest, slope 0.25, mu_s = 0.32,
- * crept at 0.045, 0.022, 0.007 sqrt(g L0) on cells of L0/16, 32, 64, whatever
- * eta_max; now at less than 5e-4. Both parts of a line share the stress, each
- * with a shear rate of its own. eta of each phase comes from the face's own
- * strain rate and pressure:
- *   shear_rate = sqrt(2 D:D), normal derivatives from the two nodes,
- *   tangential ones the mean of central differences at both, but one-sided
- *   beside the surface (skin.h); the pressure
- *   varies along the line as it does at rest, with slopes in proportion to
- *   the densities of the two halves; at a wall dp/dn = rho g_n.
  *
- * Gravity on faces is balanced by the pressure where the surface lies, not
- * where the face does. With p = p' + W, W = rho g.(x - Z), what is left of
- * gravity is -[rho] g.(x_S - Z) grad c with x_S on the surface, a gradient for
- * a surface at rest. So it is discretised as that of p is, over levels too:
- *   a_f = ((W_1 - W_0) - [rho] g.(x_S - Z) (c_1 - c_0)) / (rho_f h)
- * from the nodes of the face, W and c filled as p is (mesh_fill_potential); x_S
- * is the mean over its leaves of the centroids of their planes. Away from the
- * surface a_f = g_d. A flat bed at any angle with its gravity then rests to
- * round-off. Gravity along a periodic axis has no potential; it is added as it
- * is.
+ * Density of a face: the mean over its two leaves, over levels too, as a face
+ * between light leaves may not be heavy (projection.h).
+ *
+ * Viscosity of a face: both phases in series along the line between its nodes,
+ * as a layer sheared along its surface feels them,
+ *   eta_f = 1 / (theta/eta_1 + (1 - theta)/eta_2),
+ * theta the part of the line below the planes of the two leaves. (With the mean
+ * of c, gas would lie between a cut leaf more than half full and the grains
+ * below, and the top layer would slide.) A line starts in the phase that has
+ * most of the mass of its leaf, for the velocity of the leaf is that of this
+ * phase: at the surface if the centre is on the other side. Else cut leaves
+ * less than half full would lie on a cushion of gas (docs/notes/surface.md).
+ * Both parts of a line share the stress, each with a shear rate of its own.
+ * eta_1 and eta_2 come from shear rate and pressure of the face itself:
+ *   shear_rate = sqrt(2 D:D), normal derivatives from the two nodes, tangential
+ *   ones the mean of central differences at both, one-sided beside the surface
+ *   (skin.h); the pressure varies along the line as at rest, with slopes in
+ *   proportion to the densities of the two halves; at a wall dp/dn = rho g_n.
+ *
+ * Gravity of a face: such that the pressure balances it where the surface lies,
+ * not where the face does. With p = p' + W, W = rho g.(x - Z), gravity less the
+ * gradient of W is -[rho] g.(x_S - Z) grad c with x_S on the surface, which is
+ * a gradient if the surface is at rest. So it is discretised as that of p is,
+ * over levels too: a_f = ((W_1 - W_0) - [rho] g.(x_S - Z) (c_1 - c_0)) / (rho_f
+ * h) from the nodes of the face, W and c filled as p is (mesh_fill_potential);
+ * x_S is the mean over its leaves of the centroids of their planes. Away from
+ * the surface a_f = g_d. A flat bed at any angle with its gravity then rests to
+ * round-off. Gravity along a periodic axis has no potential and is added as a
+ * constant.
  */
 #ifndef TALUS_TWO_PHASE_PROPERTIES_H
 #define TALUS_TWO_PHASE_PROPERTIES_H

@@ -1,27 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One time step of the two-phase incompressible model.
+/* One time step of the two-phase model; step.c has its formulas.
  *
- * Repetitions (Picard, `solver.picard`). The viscosity of a step comes from the
- * strain rate and pressure at its beginning. A repetition takes them from the
- * end just found, sets back the advected velocity and does viscosity and
- * projection again; the log says how much the face velocity has changed by it,
- * `repeat_change` in series.csv how much by the last one. Iterations count over
- * all repetitions, and of their solves the worst decides whether the step is
- * good. What they do, tolerance 1e-4, change relative to the largest speed:
- *
- *   collapse, a = 1.42: examples/sensitivity.lua level=8 slip=0 picard=...
- *     repetition              1       2       3       4       6       8
- *     change (median)    2.4e-2  4.6e-3  1.9e-3  1.1e-3  3.8e-4  1.8e-4
- *   repetitions               0       1       2       4       8
- *     front at t = 3      3.435   3.416   3.418   3.417   3.418
- *     final front         4.302   4.246   4.242   4.243   4.242
- *     time                    1     1.4     1.8     2.6       4
- *
- * One is worth its price where the front is wanted to 1 %, more are not. Where
- * a flow sets off from rest the viscosity lags most: Bagnold's flow,
- * examples/bagnold.lua picard=..., is at t = 5 sqrt(H/g) at 0.274, 0.333,
- * 0.348, 0.357 with 0, 1, 2, 4, and at the same steady speed with all (2.060
- * at t = 200).
+ * The viscosity of a step comes from the strain rate and the pressure at its
+ * beginning. Each repetition (`solver.picard`) takes both from the end just
+ * found, and does viscosity and projection again from the advected velocity.
+ * run.log tells how much every repetition changes the face velocity, and
+ * repeat_change of series.csv tells it of the last. Iterations are those of all
+ * repetitions, and the worst of their solves decides whether the step is good.
+ * One repetition is worth its price where a front is wanted to 1 %, more are
+ * not (docs/notes/picard.md).
  */
 #ifndef TALUS_TWO_PHASE_STEP_H
 #define TALUS_TWO_PHASE_STEP_H

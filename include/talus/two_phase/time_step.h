@@ -1,28 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The length of a time step.
  *
- * dt is bounded by the advection, 1/2 sum |u_f| A dt / V <= cfl in every cell,
- * and by the acceleration g of grains that set off, |u| < sqrt(|g| h): there dt
- * <= 0.1 sqrt(h/|g|); it grows by at most 1.2 from one step to the next. Waves
- * of a surface at rest, w^2 = pi g/h the fastest, are stable for w dt < 2,
- * since their height is a step ahead of their pressure: dt <= sqrt(h/|gravity|)
- * of the finest leaves. (A flat bed, four times that: round-off grows to a
- * speed of 3e-4 sqrt(g H) in 20 steps.)
+ *   1/2 sum |u_f| A dt / V <= cfl         in every leaf: advection
+ *   dt <= 0.1 sqrt(h/|g|)                 where grains set off, |u| < sqrt(|g|
+ * h) dt <= sqrt(h/|gravity|)               of the finest leaves dt <= 1.2 (dt
+ * of the last step) The viscosity of grains that set off lags behind their
+ * strain rate, hence the second. The third keeps waves of a surface at rest
+ * stable: their height is a step ahead of their pressure, which needs w dt < 2,
+ * w^2 = pi g/h.
  *
- * The first two are those of what the last step has left, and say nothing of a
- * flow that starts suddenly. So a step whose own u_f passes the bound on
- * advection by more than 1.8 is repeated with a shorter dt: up to there the
- * next step can make the mean of both dt keep to the bound. In the examples no
- * step is; a restart with other conditions is a new start (conditions.h).
+ * The first two look at what the last step has left, and say nothing of a flow
+ * that starts suddenly. So a step is repeated with a shorter dt where its own
+ * u_f passes the bound on advection by more than 1.8; up to there the next step
+ * can make the mean of both dt keep to the bound.
  *
- * What cfl costs and gives (fractions.h says why it may exceed 1/2): collapse
- * by `talus run examples/column.lua cfl=...`.
- *   cfl                  0.25    0.5     0.6     0.7     0.8       1
- *   steps                1607    870     755     678     629     573
- *   front              9.1108  9.1305  9.1360  9.1434  9.1517  9.1611
- *   off the grains     0.0630  0.0629  0.0629  0.0628  0.0628  0.0628
- * (the last line: mean of tools/compare_outline.py). Beyond 0.7 the error in
- * time grows faster than the number of steps falls.
+ * cfl may exceed 1/2 (fractions.h); beyond its default of 0.7 the error in time
+ * grows faster than the number of steps falls (docs/notes/time_step.md).
  */
 #ifndef TALUS_TWO_PHASE_TIME_STEP_H
 #define TALUS_TWO_PHASE_TIME_STEP_H
