@@ -67,16 +67,17 @@ struct builder {
 
 /* Add a zero element to a growing array and return its number. */
 int32_t list_grow(void **list, int32_t *n, int32_t *capacity, size_t size);
+/* Add a request for a node that another rank holds. */
 void request_add(struct builder *b, uint64_t key, int32_t tag, int rank,
                  int32_t index);
-/* Rank that holds `key`. */
+/* Find the rank that holds `key`. */
 int key_rank(const struct builder *b, uint64_t key);
 
-/* mesh_ghost.c: leaves, ghosts, their geometry and hash. */
+/* Build, mesh_ghost.c: leaves, ghosts, their geometry and hash. */
 void build_leaves(struct builder *b);
-/* mesh_stencil.c: stencils and helper nodes, with final indices. */
+/* Build, mesh_stencil.c: stencils and helper nodes, with final indices. */
 void build_stencils(struct builder *b);
-/* mesh_face.c: faces and their links. */
+/* Build, mesh_face.c: faces and their links. */
 void build_faces(struct builder *b);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Start, end and errors of the program.
+ * Errors of the program.
  *
  * Six tools, each for one kind of trouble:
  *
@@ -14,8 +14,8 @@
  * All but these two add rank, file, line and function. Word a message as:
  * what happened, the value, what is allowed, what to try.
  *
- * Before base_begin and after base_end the program is taken to be rank 0 of 1,
- * so that code without a mesh can be tested without MPI.
+ * Before base_begin and after base_end (program.h) the program is taken to be
+ * rank 0 of 1, so that code without a mesh can be tested without MPI.
  */
 #ifndef TALUS_ERROR_H
 #define TALUS_ERROR_H
@@ -32,34 +32,12 @@ enum {
 };
 
 /*
- * Initialises MPI, with or without a launcher, makes MPI errors return to
- * MPI_CHECK, and in debug builds traps invalid operations, overflow and
- * division by zero. Collective; call once, first thing in main.
- *   argc, argv  in/out: as main got them, MPI may take its own options out;
- *               may be NULL
- */
-void base_begin(int *argc, char ***argv);
-
-/*
- * Takes the rank from the environment that a launcher (mpirun, srun) sets, for
- * what is said before MPI begins, or without it. Not collective.
- * returns  the rank, 0 without a launcher
- */
-int base_take_rank(void);
-
-/*
  * Turns the traps of debug builds on or off on this rank, around foreign code
  * that divides by zero in good faith, as a Lua file may. Does nothing in
  * release builds.
  * returns  whether they were on
  */
 bool base_trap_floating_point(bool on);
-
-/*
- * Ends MPI. Debug builds say on stderr how many blocks of memory.h each rank
- * still holds. Collective; does nothing if MPI is not running.
- */
-void base_end(void);
 
 /* Rank of this process in MPI_COMM_WORLD, 0 without MPI. Not collective. */
 int base_rank(void);
@@ -119,6 +97,16 @@ int base_size(void);
  * unless it returns MPI_SUCCESS. */
 #define MPI_CHECK(call) \
   base_check_mpi(__FILE__, __LINE__, __func__, #call, (call))
+
+/* What an error calls besides: `record` writes a line to the log, `before` and
+ * `after` stand around the last words of a program that ends in good order.
+ * Each may be NULL. */
+struct error_hooks {
+  void (*record)(const char *line);
+  void (*before)(void), (*after)(void);
+};
+/* Set the rank, the number of ranks and the hooks; for program.c. */
+void base_set(int rank, int size, const struct error_hooks *hooks);
 
 /* What the macros above call; not meant to be used by name. */
 void base_fatal(const char *file, int line, const char *function,

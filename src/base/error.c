@@ -10,26 +10,32 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "talus/lock.h"
-#include "talus/log.h"
-#include "talus/memory.h"
-#include "talus/signals.h"
-
 enum { MESSAGE_LENGTH = 4096 };
 
 static int rank = 0;
 static int size = 1;
+static struct error_hooks hooks;
 
-/* Where launchers tell a process its rank. */
-static const char *const LAUNCHER_RANK[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK",
-                                            "PMI_RANK", "SLURM_PROCID"};
+void base_set(int new_rank, int new_size, const struct error_hooks *new_hooks) {
+  rank = new_rank;
+  size = new_size;
+  hooks = *new_hooks;
+}
 
-/* Give the rank as the launcher names it, NULL without one. */
-static const char *launcher_rank(void) {
-  const char *text = NULL;
-  for (size_t k = 0; k < sizeof LAUNCHER_RANK / sizeof *LAUNCHER_RANK; k++)
-    if (text == NULL) text = getenv(LAUNCHER_RANK[k]);
-  return text;
+/* Write a line (printf) to the log, if there is one. */
+__attribute__((format(printf, 1, 2))) static void record(const char *format,
+                                                         ...) {
+  char line[2 * MESSAGE_LENGTH];
+  va_list arguments;
+  if (hooks.record == NULL) return;
+  va_start(arguments, format);
+  vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  hooks.record(line);
+}
+
+static void call(void (*hook)(void)) {
+  if (hook != NULL) hook();
 }
 
 static bool mpi_runs(void) {
@@ -55,55 +61,6 @@ bool base_trap_floating_point(bool on) {
 #endif
 }
 
-/* Forgotten memory is a bug, but not one to spoil a result that is there. */
-static void report_leaks(void) {
-#ifndef NDEBUG
-  if (mem_live_blocks() != 0)
-    fprintf(stderr, "talus: rank %d: %" PRId64 " blocks of memory not freed\n",
-            rank, mem_live_blocks());
-#endif
-}
-
-/* Started without a launcher, Open MPI forks a daemon to spawn further
- * processes from, and waits for networks to answer, unless told that nobody
- * will ask for either. All such processes of a user make and remove the same
- * directory for themselves, and one in some hundred of those that start at the
- * same time fails as another removes it: none is needed. What the user has set
- * stands. */
-static void expect_no_others(void) {
-  if (launcher_rank() != NULL) return;
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-  setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
-  setenv("OMPI_MCA_pml", "ob1", 0);
-  /* one process may remove the scratch directory that another makes */
-  setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
-}
-
-int base_take_rank(void) {
-  const char *text = launcher_rank();
-  if (text != NULL && !mpi_runs()) rank = atoi(text);
-  return rank;
-}
-
-void base_begin(int *argc, char ***argv) {
-  expect_no_others();
-  mem_begin();
-  if (MPI_Init(argc, argv) != MPI_SUCCESS) FATAL("MPI does not start");
-  MPI_CHECK(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN));
-  MPI_CHECK(MPI_Comm_rank(MPI_COMM_WORLD, &rank));
-  MPI_CHECK(MPI_Comm_size(MPI_COMM_WORLD, &size));
-  base_trap_floating_point(true);
-}
-
-void base_end(void) {
-  if (!mpi_runs()) return;
-  report_leaks();
-  log_close();
-  MPI_Finalize();
-  rank = 0;
-  size = 1;
-}
-
 int base_rank(void) { return rank; }
 
 int base_size(void) { return size; }
@@ -114,8 +71,7 @@ static _Noreturn void die(const char *file, int line, const char *function,
   /* One call, so that the words of several ranks do not mix. */
   fprintf(stderr, "talus: fatal: %s\n  rank %d, %s:%d, %s\n", message, rank,
           file, line, function);
-  log_info("fatal: %s (rank %d, %s:%d, %s)", message, rank, file, line,
-           function);
+  record("fatal: %s (rank %d, %s:%d, %s)", message, rank, file, line, function);
   if (mpi_runs()) MPI_Abort(MPI_COMM_WORLD, EXIT_SYSTEM);
   exit(EXIT_SYSTEM);
 }
@@ -146,16 +102,15 @@ static void say_error(const char *format, va_list arguments) {
   vsnprintf(message, sizeof message, format, arguments);
   fflush(stdout);
   fprintf(stderr, "talus: error: %s\n", message);
-  log_info("error: %s", message);
+  record("error: %s", message);
 }
 
 /* Last words in good order, of rank 0, and the end. */
 static _Noreturn void end_in_order(int status, const char *format,
                                    va_list arguments) {
-  signals_remember(); /* mpirun ends the others as soon as one has gone */
+  call(hooks.before); /* mpirun ends the others as soon as one has gone */
   if (rank == 0) say_error(format, arguments);
-  log_close();
-  lock_release(); /* before others end, and mpirun ends all */
+  call(hooks.after); /* before others end, and mpirun ends all */
   if (mpi_runs()) MPI_Finalize();
   exit(status);
 }
@@ -186,7 +141,7 @@ void base_user_error_alone(const char *format, ...) {
   va_start(arguments, format);
   say_error(format, arguments);
   va_end(arguments);
-  log_close();
+  call(hooks.after);
   if (mpi_runs() && size > 1) MPI_Abort(MPI_COMM_WORLD, EXIT_USER);
   if (mpi_runs()) MPI_Finalize();
   exit(EXIT_USER);
@@ -202,8 +157,8 @@ void base_warn(const char *file, int line, const char *function,
   va_end(arguments);
   fprintf(stderr, "talus: warning: %s\n  rank %d, %s:%d, %s\n", message, rank,
           file, line, function);
-  log_info("warning: %s (rank %d, %s:%d, %s)", message, rank, file, line,
-           function);
+  record("warning: %s (rank %d, %s:%d, %s)", message, rank, file, line,
+         function);
 }
 
 void base_check_mpi(const char *file, int line, const char *function,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "case_file.h"
+#include "library.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 
@@ -49,7 +50,7 @@ static struct case_file *case_new(const char *path, const char *text,
   struct case_file *file = MEM_NEW(struct case_file, 1);
   file->path = text_copy(path);
   file->text = text_copy(text);
-  file->sandbox = sandbox_new(path);
+  file->sandbox = sandbox_new(path, library_open);
   file->L = sandbox_state(file->sandbox);
   file->noverrides = noverrides;
   file->overrides = overrides;

@@ -7,7 +7,6 @@
 #include <string.h>
 #include <time.h>
 
-#include "library.h"
 #include "talus/error.h"
 #include "talus/memory.h"
 
@@ -127,7 +126,7 @@ static int give_up(lua_State *L) {
   FATAL("Lua fails outside a case: %s", message ? message : "no message");
 }
 
-struct sandbox *sandbox_new(const char *path) {
+struct sandbox *sandbox_new(const char *path, void (*open)(lua_State *)) {
   struct sandbox *sandbox = MEM_NEW(struct sandbox, 1);
   size_t size = strlen(path) + 1;
   sandbox->path = MEM_NEW(char, size);
@@ -137,7 +136,7 @@ struct sandbox *sandbox_new(const char *path) {
   sandbox->L = L;
   *(struct sandbox **)lua_getextraspace(L) = sandbox;
   lua_atpanic(L, give_up);
-  library_open(L);
+  open(L);
   lua_sethook(L, count_instructions, LUA_MASKCOUNT, HOOK_STEP);
   return sandbox;
 }

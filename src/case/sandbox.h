@@ -23,8 +23,9 @@ enum {
 
 struct sandbox;
 
-/* `path` names the code in messages, copied. */
-struct sandbox *sandbox_new(const char *path);
+/* Make a sandbox with the library that `open` gives it (library.h). `path`
+ * names the code in messages, copied. */
+struct sandbox *sandbox_new(const char *path, void (*open)(lua_State *));
 void sandbox_destroy(struct sandbox *sandbox);
 lua_State *sandbox_state(const struct sandbox *sandbox);
 

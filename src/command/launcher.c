@@ -12,6 +12,7 @@
 #include "talus/case.h"
 #include "talus/command_line.h"
 #include "talus/error.h"
+#include "talus/program.h"
 #include "talus/signals.h"
 
 static int dimension_of(int argc, char *argv[]) {

@@ -11,6 +11,7 @@
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
+#include "talus/program.h"
 #include "talus/rheology.h"
 #include "talus/run.h"
 #include "talus/run_size.h"

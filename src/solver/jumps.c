@@ -6,14 +6,6 @@
 #include "talus/count.h"
 #include "talus/memory.h"
 
-int linking_level(const struct linking *k, int32_t slot) {
-  const struct hierarchy *h = k->h;
-  if (slot >= h->nowned) return k->ghost_level[slot - h->nowned];
-  int l = h->nlevels - 1;
-  while (slot < h->level[l].begin) l--;
-  return l;
-}
-
 /* Slopes of the coarse leaf: centred if both its neighbours are nodes of its
  * level, else one-sided. */
 static void set_slopes(const struct linking *k, int l, struct jump *jump) {

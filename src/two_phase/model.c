@@ -31,14 +31,19 @@ static const struct two_phase *of_const(const struct model *model) {
   return (const struct two_phase *)model;
 }
 
+static struct model *model_of(struct two_phase *sim) {
+  sim->model.kind = &two_phase_model;
+  return &sim->model;
+}
+
 static struct model *start(const struct params *params,
                            const struct model_start *start) {
-  return &two_phase_new_told(params, start)->model;
+  return model_of(two_phase_new_told(params, start));
 }
 
 static struct model *resume(const struct params *params,
                             struct forest *forest) {
-  return &two_phase_new_on(params, forest)->model;
+  return model_of(two_phase_new_on(params, forest));
 }
 
 /* A run that ended at rest and goes on is to be slow for as long again. */

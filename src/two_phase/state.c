@@ -10,7 +10,6 @@
 #include "talus/openings.h"
 #include "talus/remap.h"
 #include "talus/skin.h"
-#include "talus/two_phase/model.h"
 #include "talus/vof.h"
 
 /* Conditions of one boundary, on a patch across `axis`. */
@@ -208,7 +207,7 @@ static void add_scratch(struct two_phase *sim) {
 struct two_phase *two_phase_new_on(const struct params *params,
                                    struct forest *forest) {
   struct two_phase *sim = MEM_NEW(struct two_phase, 1);
-  sim->model = (struct model){.kind = &two_phase_model, .grid = &sim->grid};
+  sim->model.grid = &sim->grid;
   sim->params = params;
   sim->skin = skin_new();
   grid_init(&sim->grid, params, forest);

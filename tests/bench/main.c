@@ -18,6 +18,7 @@
 #include "../mesh/transport.h"
 #include "talus/hierarchy.h"
 #include "talus/poisson.h"
+#include "talus/program.h"
 #include "talus/two_phase/start.h"
 #include "talus/viscous.h"
 

@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # tools/check_includes.py finds one violation of each rule, and nothing in the
-# clean file beside them. Usage: layering.sh BUILD
+# clean file beside them; tools/check_circles.py finds two files that call each
+# other, and not a third that calls both. Usage: layering.sh BUILD
 . "$(dirname "$0")/common.bash"
 set -eo pipefail
 tree=$directory
@@ -57,3 +58,17 @@ if [ "$(wc -l <<< "$found")" -ne "$(wc -l <<< "$expected")" ]; then
   echo "found: $found"
   exit 1
 fi
+
+circles=$root/tools/check_circles.py
+mkdir -p build/2d/src/flow
+echo 'int b(void); int a(void) { return b(); }' > src/flow/a.c
+echo 'int a(void); int b(void) { return a(); }' > src/flow/b.c
+echo 'int a(void); int c(void) { return a(); }' > src/flow/c.c
+for name in a b c; do gcc -c "src/flow/$name.c" -o "build/2d/src/flow/$name.o"; done
+found=$(python3 "$circles" build) && exit 1
+expected='files that need one another:
+  src/flow/a.c calls b
+  src/flow/b.c calls a'
+[ "$found" = "$expected" ] || { echo "$found"; exit 1; }
+rm src/flow/b.c
+python3 "$circles" build

@@ -12,6 +12,7 @@
 
 #include "report.h"
 #include "talus/error.h"
+#include "talus/program.h"
 
 #define SUITE(name) extern const struct convergence_case name##_case;
 #include "convergence_suites.inc"

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 
 #include "talus/error.h"
+#include "talus/program.h"
 
 #define SUITE(name) Suite *name##_suite(void);
 #include "mesh_suites.inc"

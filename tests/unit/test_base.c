@@ -12,6 +12,7 @@
 #include "talus/error.h"
 #include "talus/log.h"
 #include "talus/memory.h"
+#include "talus/program.h"
 
 Suite *base_suite(void);
 
@@ -336,9 +337,14 @@ START_TEST(log_continues_an_existing_file) {
 }
 END_TEST
 
+static void raise_user_error_in_program(void) {
+  base_begin(NULL, NULL);
+  raise_user_error();
+}
+
 START_TEST(log_keeps_last_words) {
   char words[TEXT_LENGTH];
-  run_in_child(raise_user_error, words);
+  run_in_child(raise_user_error_in_program, words);
   assert_log_is("error: case.lua:7: unknown key 'levle'\n");
 }
 END_TEST

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../../src/case/library.h"
 #include "../../src/case/sandbox.h"
 #include "../../src/case/source.h"
 #include "talus/error.h"
@@ -414,7 +415,7 @@ END_TEST
 /* What comes of a piece of code: NULL or a message, copied. */
 static const char *outcome(const char *code) {
   static char message[2048];
-  struct sandbox *sandbox = sandbox_new("x.lua");
+  struct sandbox *sandbox = sandbox_new("x.lua", library_open);
   const char *error = sandbox_run(sandbox, code);
   if (error != NULL) strcpy(message, error);
   sandbox_destroy(sandbox);

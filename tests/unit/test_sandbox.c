@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the sandbox of a case gives, and that it neither shows addresses nor
  * takes long. */
+#include "../../src/case/library.h"
 #include "../../src/case/sandbox.h"
 
 #include <check.h>
@@ -13,7 +14,7 @@ Suite *sandbox_suite(void);
 /* What comes of a piece of code: the text it returns, or a message. */
 static const char *outcome(const char *code) {
   static char text[2048];
-  struct sandbox *sandbox = sandbox_new("x.lua");
+  struct sandbox *sandbox = sandbox_new("x.lua", library_open);
   const char *error = sandbox_run(sandbox, code);
   const char *value = error;
   if (value == NULL) value = lua_tostring(sandbox_state(sandbox), -1);
@@ -129,7 +130,7 @@ END_TEST
 
 /* Many calls are no long call. */
 START_TEST(each_call_has_its_own_bounds) {
-  struct sandbox *sandbox = sandbox_new("x.lua");
+  struct sandbox *sandbox = sandbox_new("x.lua", library_open);
   lua_State *L = sandbox_state(sandbox);
   ck_assert_ptr_null(sandbox_run(
       sandbox, "return function() for i = 1, 4e5 do end return 1 end"));
