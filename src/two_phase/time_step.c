@@ -94,7 +94,7 @@ double time_step_choose(const struct two_phase *sim, double dt_max,
     dt = min2(dt, DT_GROWTH * sim->model.dt);
     dt = min2(dt, max2(2 * bound - sim->model.dt, DT_SHRINK * bound));
   }
-  return dt;
+  return dt < dt_max && dt_max < 2 * dt ? 0.5 * dt_max : dt;
 }
 
 double time_step_allowed(const struct two_phase *sim, double dt) {

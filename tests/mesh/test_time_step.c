@@ -23,6 +23,18 @@ static double nowhere(void *context, const double x[3]) {
   return -1;
 }
 
+START_TEST(two_equal_steps_meet_a_time) {
+  struct params params = box_params(4);
+  double rate;
+  struct two_phase *sim = two_phase_new(&params);
+  const double dt = time_step_choose(sim, 1e6, &rate);
+  ck_assert_double_eq(time_step_choose(sim, 0.5 * dt, &rate), 0.5 * dt);
+  ck_assert_double_eq(time_step_choose(sim, 1.5 * dt, &rate), 0.75 * dt);
+  ck_assert_double_eq(time_step_choose(sim, 2.5 * dt, &rate), dt);
+  two_phase_destroy(sim);
+}
+END_TEST
+
 START_TEST(a_fall_from_rest_keeps_to_the_bound) {
   struct params params = box_params(DIM == 2 ? 5 : 4);
   double most = 0;
@@ -193,6 +205,7 @@ END_TEST
 Suite *time_step_suite(void) {
   Suite *suite = suite_create("time_step");
   TCase *tc = tcase_create("time_step");
+  tcase_add_test(tc, two_equal_steps_meet_a_time);
   tcase_add_test(tc, a_fall_from_rest_keeps_to_the_bound);
   tcase_add_test(tc, dt_grows_by_a_fifth_a_step);
   tcase_add_loop_test(tc, c_is_in_0_1_however_long_it_has_lagged, 0, 4);

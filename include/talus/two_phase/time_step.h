@@ -2,9 +2,11 @@
 /* The length of a time step.
  *
  *   1/2 sum |u_f| A dt / V <= cfl         in every leaf: advection
- *   dt <= 0.1 sqrt(h/|g|)                 where grains set off, |u| < sqrt(|g|
- * h) dt <= sqrt(h/|gravity|)               of the finest leaves dt <= 1.2 (dt
- * of the last step) The viscosity of grains that set off lags behind their
+ *   dt <= 0.1 sqrt(h/|g|)                 where grains set off, u^2 < |g| h
+ *   dt <= sqrt(h/|gravity|)               of the finest leaves
+ *   dt <= 1.2 (dt of the last step)
+ *
+ * The viscosity of grains that set off lags behind their
  * strain rate, hence the second. The third keeps waves of a surface at rest
  * stable: their height is a step ahead of their pressure, which needs w dt < 2,
  * w^2 = pi g/h.
@@ -13,6 +15,9 @@
  * that starts suddenly. So a step is repeated with a shorter dt where its own
  * u_f passes the bound on advection by more than 1.8; up to there the next step
  * can make the mean of both dt keep to the bound.
+ *
+ * The last two steps before a time that must be met are equal: a short last one
+ * would hold back the steps after it.
  *
  * cfl may exceed 1/2 (fractions.h); beyond its default of 0.7 the error in time
  * grows faster than the number of steps falls (docs/notes/time_step.md).
