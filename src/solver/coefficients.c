@@ -49,9 +49,8 @@ static void set_walls(struct hierarchy *h, int l, const struct bc *const bc[],
                       double *const wall[]) {
   const struct level *level = &h->level[l];
   const double size = ldexp(forest_layout(h->mesh->forest)->size, -l);
-  for (int32_t k = 0; k < h->nsides; k++) {
+  for (int32_t k = level->side_begin; k < level->side_end; k++) {
     const int32_t s = h->sides[k].slot;
-    if (s < level->begin || s >= level->begin + level->nowned) continue;
     for (int f = 0; f < NFACE; f++) {
       const int patch = h->sides[k].patch[f];
       if (patch < 0) continue;
@@ -126,8 +125,11 @@ static void clear_sides(struct hierarchy *h) {
 /* Of the mass, overwritten, walls and sides. */
 static void set_inverse(struct hierarchy *h, double *restrict mass,
                         double *const wall[]) {
-  for (int f = 0; f < NFACE; f++) {
-    for (int32_t i = 0; i < h->nowned; i++) mass[i] += (double)h->w[f][i];
+  for (int32_t i = 0; i < h->nowned; i++) {
+    double sum = mass[i];
+#pragma GCC unroll 6
+    for (int f = 0; f < NFACE; f++) sum += (double)h->w[f][i];
+    mass[i] = sum;
   }
   for (int c = 0; c < h->nparts; c++) {
     const double twice = h->nparts > 1 ? 1 : 0; /* the normal stress */
@@ -175,7 +177,7 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
   double *mass = h->e[0], *const *wall = h->r; /* free for now */
   const size_t size = (size_t)h->nslots * sizeof(double);
   h->nparts = nparts;
-  h->ncycles = h->rough_sweeps = 0;
+  h->nskin = h->ncycles = h->rough_sweeps = 0;
   for (int c = 0; c < nparts; c++) memset(wall[c], 0, size);
   /* what other ranks have merged is added */
   for (int f = 0; f < NFACE && h->nranks > 1; f++) {

@@ -149,7 +149,7 @@ KERNEL void restrict_families(struct hierarchy *h, const struct level *level,
       }
     }
     for (int c = 0; c < nparts; c++) {
-      for (int32_t k = 0; k < n; k++) h->r[c][parent[first + k]] += sum[c][k];
+      for (int32_t k = 0; k < n; k++) h->r[c][parent[first + k]] = sum[c][k];
     }
   }
 }
@@ -324,7 +324,7 @@ KERNEL void run(struct hierarchy *h, double factor, const double *r,
   for (int c = 0; c < nparts; c++) {
     memset(h->e[c], 0,
            size + (size_t)(h->njumps + h->nmirrors) * sizeof(double));
-    memset(h->r[c], 0, size);
+    if (h->nranks > 1) memset(h->r[c], 0, size); /* what others add to */
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       h->r[c][h->leaf_slot[i]] =
           factor * mesh_volume(mesh, i) * r[(int64_t)c * mesh->nleaves + i];

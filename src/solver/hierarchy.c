@@ -143,6 +143,19 @@ static void find_leaves(struct linking *k) {
   }
 }
 
+/* The sides of owned nodes follow one another level by level. */
+static void divide_sides(struct hierarchy *h) {
+  int32_t k = 0;
+  for (int l = 0; l < h->nlevels; l++) {
+    struct level *level = &h->level[l];
+    level->side_begin = k;
+    while (k < h->nsides && h->sides[k].slot < level->begin + level->nowned) {
+      k++;
+    }
+    level->side_end = k;
+  }
+}
+
 /* Patches of walls, from the leaves up; of several patches on the side of a
  * merged node one is taken. Travels in h->w, which is not needed yet. */
 static void find_patches(struct hierarchy *h) {
@@ -256,6 +269,7 @@ struct hierarchy *hierarchy_new(const struct mesh *mesh) {
   jumps_make(&k);
   allocate_sides(h);
   find_patches(h);
+  divide_sides(h);
   mirrors_make(&k);
   allocate(h);
   for (int l = 0; l < h->nlevels; l++) mem_free(k.parent_key[l]);

@@ -29,6 +29,7 @@ struct level {
   int32_t nowned;       /* slots, trees on level 0, else NCHILD per family */
   int32_t nfamilies;    /* 0 on level 0 */
   int32_t family_begin; /* into family_parent */
+  int32_t side_begin, side_end;     /* into sides */
   int32_t jump_begin, jump_end;     /* into jump */
   int32_t mirror_begin, mirror_end; /* into mirror */
   struct plan copy;                 /* owned -> ghost values of this level */
@@ -75,7 +76,7 @@ struct hierarchy {
                                 a) + 2 (upper b); an image beyond a wall */
   uint8_t *wall;             /* [nactive] bit f: face f is a wall */
   int32_t nsides;
-  struct side *sides;
+  struct side *sides; /* [nsides] by slot */
   int32_t njumps;
   struct jump *jump;
   int32_t nmirrors;
