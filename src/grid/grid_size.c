@@ -21,6 +21,7 @@ enum {
 struct cell {
   double x[DIM]; /* centre, m */
   double weight; /* cells of its level that it stands for */
+  double bare;   /* a box that reaches this many cells beyond has no grains */
 };
 
 struct walk {
@@ -68,13 +69,16 @@ static int sample_count(const struct walk *walk) {
   return n;
 }
 
-/* Does the shape reach into the box, does it leave a part of it? */
-static void look_for_grains(const struct walk *walk, const struct cell *cell,
+/* Does the shape reach into the box, does it leave a part of it? A box within
+ * one that was found bare is not searched. */
+static void look_for_grains(const struct walk *walk, struct cell *cell,
                             double width, bool *some, bool *others) {
   const struct function *shape = &walk->params->shape;
   const int n = sample_count(walk);
   *some = *others = false;
   if (shape->eval == NULL) *some = true;
+  if (width <= cell->bare) *others = true;
+  if (*others) return;
   for (int k = 0; k < n && shape->eval != NULL && !(*some && *others); k++) {
     double x[3] = {0};
     sample_point(walk, cell, width, k, x);
@@ -83,6 +87,7 @@ static void look_for_grains(const struct walk *walk, const struct cell *cell,
     else
       *others = true;
   }
+  if (!*some) cell->bare = width;
 }
 
 /* How far from a region of level `finest` cells of this level are divided, in
@@ -129,7 +134,7 @@ static bool wants_velocity(const struct walk *walk, const struct cell *cell,
 }
 
 /* Is there something in the cell of what the criterion is for? */
-static bool is_meant(const struct walk *walk, const struct cell *cell,
+static bool is_meant(const struct walk *walk, struct cell *cell,
                      const struct criterion *criterion) {
   bool grains, gas;
   if (criterion->only == CRITERION_BOTH) return true;
@@ -137,7 +142,7 @@ static bool is_meant(const struct walk *walk, const struct cell *cell,
   return criterion->only == CRITERION_GRAINS ? grains : gas;
 }
 
-static bool wants(const struct walk *walk, const struct cell *cell,
+static bool wants(const struct walk *walk, struct cell *cell,
                   const struct criterion *criterion) {
   bool some, others;
   const int finest = criterion->level;
@@ -160,7 +165,7 @@ static bool wants(const struct walk *walk, const struct cell *cell,
   return false;
 }
 
-static bool is_divided(const struct walk *walk, const struct cell *cell) {
+static bool is_divided(const struct walk *walk, struct cell *cell) {
   const struct params *params = walk->params;
   if (walk->level >= params->level_max) return false;
   if (walk->level < params->level_min || params->ncriteria == 0) return true;
@@ -192,6 +197,7 @@ static double descend(struct walk *walk) {
   const double least = pow(EVALUATIONS / (double)walk->n, 1. / DIM);
   walk->samples = (int)min2(MOST_SAMPLES, max2(LEAST_SAMPLES, least));
   for (int64_t i = 0; i < walk->n; i++) {
+    walk->cell[i].bare = -1;
     if (!is_divided(walk, &walk->cell[i])) {
       leaves += walk->cell[i].weight;
       continue;
