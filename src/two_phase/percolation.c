@@ -127,12 +127,12 @@ static bool find_reach(const struct two_phase *sim, const double *solid,
   const struct mesh *mesh = sim->grid.mesh;
   double others = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double least = 1;
+    double least = solid[i];
     reach[i] = 0;
     if (!(solid[i] < 1 - VOF_EMPTY) && !(sim->c->v[i] < 1 - VOF_EMPTY)) {
       continue;
     }
-    for (int s = 0; s < NSTENCIL; s++) {
+    for (int s = 0; s < NSTENCIL && !(least < PERCOLATION_PURE); s++) {
       least = min2(least, solid[mesh->stencil[i][s]]);
     }
     reach[i] = least < PERCOLATION_PURE || is_at_opening(sim, i);
