@@ -31,14 +31,24 @@
 struct skin_face {
   int32_t face;
   int8_t axis;           /* of the face */
+  int32_t node[DIM][4];  /* along each axis, the far ends of the lines */
   double weight[DIM][4]; /* along each axis, of the lines of nodes 0, 0, 1, 1
                            down and up; their sum is 1 */
   double part[DIM];      /* of the shear stress that is left, 1: all */
 };
 
+/* A leaf whose faces may be of the skin. */
+struct skin_leaf {
+  int32_t leaf;
+  double grains[NSTENCIL]; /* m of its stencil */
+};
+
 struct skin {
   int32_t n, room;
   struct skin_face *face; /* [n], those with weights; owned */
+  int32_t nleaves, leaf_room;
+  struct skin_leaf
+      *leaf; /* [nleaves], all that are beside the surface; owned */
 };
 
 /* Owned by the caller. NULL is a skin without faces. */

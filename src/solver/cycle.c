@@ -270,6 +270,7 @@ KERNEL void smooth_rough(struct hierarchy *h, int l, int nparts) {
       for (int32_t j = begin[0]; j < begin[1]; j++) {
         relax_node(h, any, h->rough[j], nparts);
       }
+      if (nparts > 1) skin_nodes_relax(h, l, q);
       if (ends_colour(q, nparts)) copy_ghosts(h, l);
       if (nparts > 1) reflect(h, l);
     }
@@ -291,6 +292,7 @@ KERNEL void smooth(struct hierarchy *h, int l, int nsweeps, bool from_zero,
       } else {
         relax(h, run, nparts);
       }
+      if (nparts > 1) skin_nodes_relax(h, l, q);
       if (ends_colour(q, nparts)) copy_ghosts(h, l);
       if (nparts > 1) reflect(h, l);
     }
@@ -302,6 +304,7 @@ KERNEL void cycle(struct hierarchy *h, int nparts) {
     plan_run(&h->level[l].add, nparts, h->r, 1, true);
     smooth(h, l, SWEEPS_DOWN, true, nparts);
     restrict_families(h, &h->level[l], nparts);
+    if (nparts > 1) skin_nodes_restrict(h, l);
     restrict_jumps(h, &h->level[l], nparts);
   }
   plan_run(&h->level[0].add, nparts, h->r, 1, true);

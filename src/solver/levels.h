@@ -15,6 +15,7 @@
 #include "talus/hierarchy.h"
 #include "talus/krylov.h"
 #include "talus/plan.h"
+#include "talus/skin.h"
 
 enum {
   HALF = NCHILD / 2,
@@ -59,6 +60,19 @@ struct side {
   int8_t patch[NFACE]; /* beyond that face, -1: no wall */
 };
 
+/* A leaf beside the surface of the grains, where the transposed gradient has
+ * weights (skin_nodes.c): what they change in its rows of the operator.
+ * `around` are the nodes around it in each plane of axes a < b, 4 + i + 3 j for
+ * offsets i along a, j along b; row[0] is that of component a, times component
+ * b, row[1] the other way round. */
+struct skin_node {
+  int32_t slot, parent;
+  int32_t around[NPAIR][9];
+  double row[NPAIR][2][9];
+  double diagonal[DIM];
+  double inverse[DIM][DIM]; /* of the block of the node */
+};
+
 struct hierarchy {
   const struct mesh *mesh; /* borrowed */
   uint64_t revision;       /* of the mesh */
@@ -96,8 +110,12 @@ struct hierarchy {
   int32_t *rough;       /* [nowned] */
   int32_t *rough_begin; /* [nlevels * NCHILD + 1] */
   int rough_sweeps;
-  int ncycles;           /* since coefficients_set */
-  double first_residual; /* before the first of them, or the second */
+  /* Nodes beside the surface of the grains, in the order of `rough` */
+  int32_t nskin, skin_room;
+  struct skin_node *skin_node; /* [nskin] */
+  int32_t *skin_begin;         /* [nlevels * NCHILD + 1] */
+  int ncycles;                 /* since coefficients_set */
+  double first_residual;       /* before the first of them, or the second */
   /* Value beyond a wall over that inside, [nlevels] */
   double (*beyond)[DIM][MESH_MAX_PATCHES];
   double *coarse[3]; /* [trees] for conjugate gradients */
@@ -146,6 +164,14 @@ void cycle_run(struct hierarchy *h, double factor, const double *r,
  * relax nodes near jumps of the coefficient more often (rough.c). Uses h->e.
  * Collective. */
 void rough_watch(struct hierarchy *h, double residual);
+/* Find the nodes of a skin (skin_nodes.c), NULL: none, after coefficients_set.
+ */
+void skin_nodes_set(struct hierarchy *h, const struct skin *skin);
+/* Relax those of run q of level l, which have just been relaxed without
+ * weights. */
+void skin_nodes_relax(struct hierarchy *h, int l, int q);
+/* Add to r of parents what the weights change in the residual of level l. */
+void skin_nodes_restrict(struct hierarchy *h, int l);
 /* The cycle on the trees alone (coarse.c): from h->r to h->e. */
 void coarse_solve(struct hierarchy *h);
 

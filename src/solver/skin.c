@@ -16,6 +16,7 @@ struct skin *skin_new(void) {
 void skin_destroy(struct skin *skin) {
   if (!skin) return;
   mem_free(skin->face);
+  mem_free(skin->leaf);
   mem_free(skin);
 }
 
@@ -33,22 +34,23 @@ static inline double grain_part(double c, double ratio) {
   return c / (c + (1 - c) * ratio);
 }
 
-/* Weights of the lines along t of face f of axis d, `grains` being M; false if
- * all are whole. */
+/* Weights of the lines along t of face f of axis d, `grains` being M and m that
+ * of the stencil; false if all are whole. */
 static bool weigh_lines(const struct mesh *mesh, int d, int32_t f, int t,
-                        const double *c, double ratio, double grains,
+                        const double *m, double grains,
                         struct skin_face *face) {
-  const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
   double weight[4], sum = 0, least = 1;
   int place[2];
   face_places(mesh, d, f, place);
   for (int k = 0; k < 4; k++) {
     const int end = place[k / 2] + (k & 1 ? 1 : -1) * stencil_step(t);
-    weight[k] = 1 - grains * (1 - grain_part(c[stencil[end]], ratio));
+    weight[k] = 1 - grains * (1 - m[end]);
     sum += weight[k];
     least = min2(least, weight[k]);
   }
   for (int k = 0; k < 4; k++) {
+    const int end = place[k / 2] + (k & 1 ? 1 : -1) * stencil_step(t);
+    face->node[t][k] = mesh->stencil[mesh->face_owner[f]][end];
     face->weight[t][k] = sum > 0 ? weight[k] / sum : 0;
   }
   face->part[t] = min2(sum, 1);
@@ -63,37 +65,70 @@ static void add_face(struct skin *skin, const struct skin_face *face) {
   skin->face[skin->n++] = *face;
 }
 
+/* Does a leaf that holds grains see something else in its stencil? */
+static bool is_beside(const struct mesh *mesh, const double *c, double ratio,
+                      int32_t i) {
+  const int32_t *stencil = mesh->stencil[i];
+  double least = c[i];
+  if (grain_part(c[i], ratio) < WHOLE) return false;
+#pragma GCC unroll 27
+  for (int k = 0; k < NSTENCIL; k++) least = min2(least, c[stencil[k]]);
+  return grain_part(least, ratio) < 1 - WHOLE;
+}
+
+static void add_leaf(const struct mesh *mesh, const double *c, double ratio,
+                     int32_t i, struct skin *skin) {
+  if (skin->nleaves == skin->leaf_room) {
+    skin->leaf_room = 2 * skin->leaf_room + 64;
+    skin->leaf =
+        mem_resize(skin->leaf, (size_t)skin->leaf_room, sizeof *skin->leaf);
+  }
+  struct skin_leaf *leaf = &skin->leaf[skin->nleaves++];
+  leaf->leaf = i;
+  for (int k = 0; k < NSTENCIL; k++) {
+    leaf->grains[k] = grain_part(c[mesh->stencil[i][k]], ratio);
+  }
+}
+
+/* Weigh the lines of face f of axis d, m being that of the stencil of its
+ * owner, and keep it if some are not whole. */
+static void find_face(const struct mesh *mesh, int d, int32_t f,
+                      const double *m, struct skin *skin) {
+  struct skin_face face = {.face = f, .axis = (int8_t)d};
+  bool found = false;
+  int place[2];
+  face_places(mesh, d, f, place);
+  const double grains = min2(m[place[0]], m[place[1]]);
+  if (grains < WHOLE) return;
+  for (int t = 0; t < DIM; t++) {
+    found = (t != d && weigh_lines(mesh, d, f, t, m, grains, &face)) || found;
+  }
+  if (found) add_face(skin, &face);
+}
+
 void skin_find(const struct mesh *mesh, const double *c, double ratio,
                struct skin *skin) {
-  skin->n = 0;
-  for (int d = 0; d < DIM; d++) {
-    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const int32_t *node = mesh->face_node[f];
-      const double grains = grain_part(min2(c[node[0]], c[node[1]]), ratio);
-      if (grains < WHOLE) continue;
-      struct skin_face face = {.face = f, .axis = (int8_t)d};
-      bool found = false;
-      for (int t = 0; t < DIM; t++) {
-        found =
-            (t != d && weigh_lines(mesh, d, f, t, c, ratio, grains, &face)) ||
-            found;
+  skin->nleaves = skin->n = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (is_beside(mesh, c, ratio, i)) add_leaf(mesh, c, ratio, i, skin);
+  }
+  for (int32_t k = 0; k < skin->nleaves; k++) {
+    const struct skin_leaf *leaf = &skin->leaf[k];
+    for (int s = 0; s < NFACE; s++) {
+      const int32_t f = mesh->cell_face[leaf->leaf][s];
+      if (f < mesh->nfaces && mesh->face_owner[f] == leaf->leaf) {
+        find_face(mesh, s >> 1, f, leaf->grains, skin);
       }
-      if (found) add_face(skin, &face);
     }
   }
 }
 
 double skin_difference(const struct mesh *mesh, const struct skin_face *face,
                        int t, const double *u) {
-  const int32_t *stencil = mesh->stencil[mesh->face_owner[face->face]];
-  double sum = 0;
-  int place[2];
-  face_places(mesh, face->axis, face->face, place);
-  for (int k = 0; k < 4; k++) {
-    const int sign = k & 1 ? 1 : -1;
-    const int end = place[k / 2] + sign * stencil_step(t);
-    sum += face->weight[t][k] * sign *
-           (u[stencil[end]] - u[stencil[place[k / 2]]]);
-  }
-  return sum;
+  const int32_t *node = mesh->face_node[face->face], *end = face->node[t];
+  const double *weight = face->weight[t];
+  return weight[1] * (u[end[1]] - u[node[0]]) -
+         weight[0] * (u[end[0]] - u[node[0]]) +
+         weight[3] * (u[end[3]] - u[node[1]]) -
+         weight[2] * (u[end[2]] - u[node[1]]);
 }

@@ -145,6 +145,7 @@ static void precondition(void *context, const double *r, double size,
 static void prepare(void *context) {
   const struct context *k = context;
   coefficients_set(k->h, DIM, k->eta_f, k->theta_dt, k->rho, k->bc);
+  skin_nodes_set(k->h, k->skin);
 }
 
 struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,

@@ -8,7 +8,7 @@
 #include "talus/viscous.h"
 
 /* A block of grains, of viscosity 1, in a gas without any, which moves as it
- * likes; leaves of 1/16. `low` is where it begins, it ends at 3/4. */
+ * likes. `low` is where it begins, it ends at 3/4. */
 static double low[DIM];
 
 static bool in_block(const double *x) {
@@ -29,12 +29,12 @@ struct block {
 };
 
 /* u = A x in the grains. */
-static struct block *block_new(double height, double a[DIM][DIM]) {
+static struct block *block_new(int level, double height, double a[DIM][DIM]) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[] = {neumann, neumann, neumann};
   struct block *b = MEM_NEW(struct block, 1);
   for (int d = 0; d < DIM; d++) low[d] = d == 1 ? 0.75 - height : 0.25;
-  b->forest = grid_new(MPI_COMM_WORLD, 1, false, 4, 4);
+  b->forest = grid_new(MPI_COMM_WORLD, 1, false, level, level);
   b->mesh = mesh_new(b->forest);
   b->skin = skin_new();
   b->c = MEM_NEW(double, b->mesh->ncells);
@@ -99,7 +99,7 @@ START_TEST(grains_that_turn_feel_no_gas) {
   double a[DIM][DIM] = {{0}};
   a[0][1] = 1, a[1][0] = -1;
   a[DIM - 1][0] += 0.5, a[0][DIM - 1] -= 0.5;
-  struct block *b = block_new(0.5, a);
+  struct block *b = block_new(4, 0.5, a);
   ck_assert_double_le(largest_force(b, b->skin), 1e-12); /* 1e-16 / h^2 */
   ck_assert_double_le(shear_error(b, b->skin, 0), 1e-13);
   ck_assert_double_ge(largest_force(b, NULL), 10); /* of 1 / (4 h^2) */
@@ -118,7 +118,7 @@ START_TEST(shear_rate_of_grains_is_exact_up_to_the_surface) {
       squared += 0.5 * (a[d][e] + a[e][d]) * (a[d][e] + a[e][d]);
     }
   }
-  struct block *b = block_new(0.5, a);
+  struct block *b = block_new(4, 0.5, a);
   ck_assert_double_le(shear_error(b, b->skin, sqrt(squared)), 1e-13);
   block_destroy(b);
 }
@@ -128,9 +128,47 @@ END_TEST
 START_TEST(film_of_one_cell_does_not_bend) {
   double a[DIM][DIM] = {{0}};
   a[1][0] = 1;
-  struct block *b = block_new(1. / 16, a);
+  struct block *b = block_new(4, 1. / 16, a);
   ck_assert_double_le(largest_force(b, b->skin), 1e-12);
   block_destroy(b);
+}
+END_TEST
+
+/* Count the iterations of a viscous solve for the block in a gas 1000 times
+ * lighter and 1e5 times softer. A cycle that does not know the weights takes 12
+ * and 14 in 2D and 3D, 8 and 9 without weights. */
+static int iterations(struct block *b, bool with_skin) {
+  static const struct bc no_slip[MESH_MAX_PATCHES] = {{.type = BC_DIRICHLET}};
+  const struct bc *bc[] = {no_slip, no_slip, no_slip};
+  struct hierarchy *hierarchy = hierarchy_new(b->mesh);
+  double *rho = MEM_NEW(double, b->mesh->nleaves);
+  for (int32_t f = 0; f < b->mesh->nfaces_all; f++) {
+    b->eta_f[f] = b->eta_f[f] > 0 ? 10 : 1e-4;
+  }
+  for (int32_t i = 0; i < b->mesh->nleaves; i++) {
+    rho[i] = b->c[i] + (1 - b->c[i]) * 1e-3;
+    for (int d = 0; d < DIM; d++) b->force[d][i] = rho[i] * b->u[d][i];
+  }
+  const struct solve_stats stats = viscous_solve(
+      b->mesh, hierarchy, rho, b->eta_f, with_skin ? b->skin : NULL, 0.01,
+      b->force, bc, 1e-5, 50, b->u);
+  ck_assert_int_eq(stats.status, SOLVE_CONVERGED);
+  mem_free(rho);
+  hierarchy_destroy(hierarchy);
+  return stats.iterations;
+}
+
+/* At present 10 and 12. */
+START_TEST(weights_cost_few_iterations) {
+  double a[DIM][DIM] = {{0}};
+  int n[2];
+  a[0][1] = 1;
+  for (int k = 0; k < 2; k++) {
+    struct block *b = block_new(5, 0.5, a);
+    n[k] = iterations(b, k);
+    block_destroy(b);
+  }
+  ck_assert_int_le(n[1], n[0] + DIM);
 }
 END_TEST
 
@@ -141,6 +179,7 @@ Suite *skin_suite(void) {
   tcase_add_test(t, grains_that_turn_feel_no_gas);
   tcase_add_test(t, shear_rate_of_grains_is_exact_up_to_the_surface);
   tcase_add_test(t, film_of_one_cell_does_not_bend);
+  tcase_add_test(t, weights_cost_few_iterations);
   suite_add_tcase(suite, t);
   return suite;
 }
