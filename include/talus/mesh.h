@@ -1,30 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Mesh: the forest flattened into plain arrays.
+/* Mesh: the forest as plain arrays, made anew whenever the forest changes.
  *
- * Index space of a cell array, length ncells:
+ * An array over cells has ncells entries, the nodes:
  *   [0, nleaves)                 leaves of this rank, in Morton order
  *   [nleaves, begin_average)     ghosts: leaves of other ranks that touch ours
  *   [begin_average, begin_virtual)  averages of finer leaves
  *   [begin_virtual, begin_boundary) virtual children of coarser leaves
  *   [begin_boundary, ncells)     boundary nodes
- * The last three are helper nodes. Every leaf sees a uniform stencil at its
- * own level: stencil[i][s], s = (i+1) + 3(j+1) + 9(k+1) for offsets i, j, k
- * in {-1, 0, 1}, is the index of a node of the same size. A leaf that
- * touches a finer one sees the average of the finer cells; one that touches
- * a coarser leaf sees a child of it, interpolated linearly with one-sided
- * slopes where needed, so that linear fields are exact everywhere.
- * mesh_fill makes ghosts and helper nodes valid from leaf values.
+ * The last three kinds are helper nodes. Every leaf has a uniform stencil of
+ * nodes of its own size: stencil[i][s], s = (i+1) + 3(j+1) + 9(k+1) for offsets
+ * i, j, k in {-1, 0, 1}. In the place of finer leaves stands their average, in
+ * the place of a coarser leaf one of its virtual children, interpolated
+ * linearly, with one-sided slopes where need be, so that linear fields are
+ * exact everywhere. A kernel reads the stencil and knows nothing of levels,
+ * ranks and boundaries; before, mesh_fill must have made ghosts and helper
+ * nodes from the leaves.
  *
- * Index space of a face array, length nfaces_all:
- *   [0, nfaces)                  faces computed here, sorted by direction
- *   [nfaces, begin_face_average) copies of faces that other ranks compute
+ * An array over faces has nfaces_all entries:
+ *   [0, nfaces)                  faces of this rank, sorted by direction
+ *   [nfaces, begin_face_average) copies of faces of other ranks
  *   [begin_face_average, nfaces_all) averages of the finer faces that make
  *                                up one side of a coarser leaf
  * A face belongs to the finer of its two leaves, or to the one on its lower
- * side. Face values are densities (velocity, flux per area), positive
- * towards increasing coordinate. cell_face[i][2d + side] is valid for every
- * leaf after mesh_fill_faces, so that what leaves one cell enters another to
- * round-off (mesh_outflow).
+ * side. Its value is a density (velocity, flux per area), positive towards
+ * increasing coordinate. After mesh_fill_faces all sides of a leaf are valid,
+ * cell_face[i][2d + (0 lower, 1 upper)], so that what leaves one leaf enters
+ * another to round-off (mesh_outflow).
  */
 #ifndef TALUS_MESH_H
 #define TALUS_MESH_H
@@ -44,18 +45,19 @@ enum {
   MESH_MAX_PATCHES = 32
 };
 
-/* Step of the stencil index along axis d: 1, 3, 9. */
+/* Return the step of the stencil index along axis d: 1, 3, 9. */
 static inline int stencil_step(int d) { return d == 0 ? 1 : d == 1 ? 3 : 9; }
-/* Stencil index of the face neighbour on face f = 2d + side. */
+/* Return the stencil index of the neighbour on side f = 2d + (0, 1). */
 static inline int stencil_face(int f) {
   return STENCIL_CENTRE + (f & 1 ? 1 : -1) * stencil_step(f >> 1);
 }
 
-/* Value of a field at a boundary, per patch. The ghost value is
- *   a inner + b, chosen so that at the wall
- *   DIRICHLET: phi = value; NEUMANN: dphi/dn = value (n outwards);
- *   ROBIN: phi - value = -length dphi/dn (slip length, >= 0);
- *   CARRIED: phi = value, of what flows in.
+/* Condition of a field phi on a patch. The boundary node has the value
+ * a inside + b, such that on the wall, with n outwards,
+ *   DIRICHLET: phi = value
+ *   NEUMANN:   dphi/dn = value
+ *   ROBIN:     phi - value = -length dphi/dn, length >= 0 (a slip length)
+ *   CARRIED:   phi = value, of what flows in
  * On a face that patches share (forest.h) the value is their mean; patches with
  * NEUMANN add nothing to it. */
 enum bc_type { BC_NEUMANN, BC_DIRICHLET, BC_ROBIN, BC_CARRIED };
@@ -73,8 +75,9 @@ struct shared_node {
 
 struct mesh_exchange; /* private: message plans */
 
-/* Keys covered by a cell of level l; children follow one another in steps of
- * mesh_key_span(l + 1), child number = x + 2 y + 4 z. */
+/* Return how many keys a cell of this level covers. Child number x + 2 y + 4 z
+ * of a cell of level l has the key of the cell plus that number times
+ * mesh_key_span(l + 1). */
 uint64_t mesh_key_span(int level);
 
 struct mesh {
@@ -124,49 +127,49 @@ struct mesh {
                                  of the leaves; borrowed from the forest */
 };
 
-/* Geometry. The functions below alone know how much sides and volumes weigh;
- * a length is x or h itself. With q_s the value on side s of a leaf, A the
- * area of a side, V the volume and w = V/A,
- *   net = sum_d (q_{2d+1} - q_{2d}),  outflow = A net,  div = outflow/V =
- * net/w. A metric, or sides that are partly closed, multiply the values on
- * sides in mesh_side, the volume and the width, and the means of
- * mesh_fill_faces. */
+/* Geometry. The functions below alone know how much sides and volumes weigh; a
+ * length is x or h itself. With q_s the value on side s of a leaf, A the area
+ * of a side, V the volume and w = V/A the width, net = sum_d (q_{2d+1} -
+ * q_{2d}),   outflow = A net,   div = net/w. A metric, or sides that are partly
+ * closed, would multiply the values in mesh_side, the volume, the width, and
+ * the means of mesh_fill_faces. */
 
-/* Volume of leaf or ghost i, m^3 (in 2D m^2). */
+/* Return the volume of leaf or ghost i, m^3 (in 2D m^2). */
 static inline double mesh_volume(const struct mesh *mesh, int32_t i) {
   const double h = mesh->h[i];
   return DIM == 2 ? h * h : h * h * h;
 }
 
-/* Volume of leaf i over the area of a side, m. */
+/* Return the volume of leaf i over the area of a side, m. */
 static inline double mesh_width(const struct mesh *mesh, int32_t i) {
   return mesh->h[i];
 }
 
-/* Area of a side of leaf i, m^2 (in 2D m). */
+/* Return the area of a side of leaf i, m^2 (in 2D m). */
 static inline double mesh_side_area(const struct mesh *mesh, int32_t i) {
   return mesh_volume(mesh, i) / mesh_width(mesh, i);
 }
 
-/* Area of face f < nfaces, m^2 (in 2D m). */
+/* Return the area of face f < nfaces, m^2 (in 2D m). */
 static inline double mesh_face_area(const struct mesh *mesh, int32_t f) {
   const double h = mesh->face_h[f];
   return DIM == 2 ? h : h * h;
 }
 
-/* Value of a filled face array v on side s = 2d + (0 lower, 1 upper) of leaf i,
- * weighted by the area that is open there, over A. */
+/* Return the value of a filled face array v on side s = 2d + (0 lower, 1 upper)
+ * of leaf i, times the area that is open there, over A. */
 static inline double mesh_side(const struct mesh *mesh, const double *v,
                                int32_t i, int s) {
   return v[mesh->cell_face[i][s]];
 }
 
-/* Part of the net that leaves along axis d. */
+/* Return the part of mesh_net along axis d. */
 static inline double mesh_net_along(const struct mesh *mesh, const double *v,
                                     int32_t i, int d) {
   return mesh_side(mesh, v, i, 2 * d + 1) - mesh_side(mesh, v, i, 2 * d);
 }
 
+/* Return the net above of a filled face array v at leaf i. */
 static inline double mesh_net(const struct mesh *mesh, const double *v,
                               int32_t i) {
   double net = 0;
@@ -174,18 +177,21 @@ static inline double mesh_net(const struct mesh *mesh, const double *v,
   return net;
 }
 
+/* Return how much leaves leaf i: its outflow, in units of v times m^2 (2D m).
+ */
 static inline double mesh_outflow(const struct mesh *mesh, const double *v,
                                   int32_t i) {
   return mesh_net(mesh, v, i) * mesh_side_area(mesh, i);
 }
 
+/* Return the divergence of a filled face array v at leaf i, in units of v/m. */
 static inline double mesh_divergence(const struct mesh *mesh, const double *v,
                                      int32_t i) {
   return mesh_net(mesh, v, i) / mesh_width(mesh, i);
 }
 
-/* Half of what crosses the sides of leaf i in either direction, over its
- * volume: the volumes of itself that a velocity replaces per time, 1/s. */
+/* Return half of what crosses the sides of leaf i in either direction over its
+ * volume, 1/s: how often a velocity v replaces its contents per time. */
 static inline double mesh_turnover(const struct mesh *mesh, const double *v,
                                    int32_t i) {
   double sum = 0;
@@ -193,14 +199,14 @@ static inline double mesh_turnover(const struct mesh *mesh, const double *v,
   return 0.5 * sum / mesh_width(mesh, i);
 }
 
-/* Mean of the face values on both sides of leaf i along axis d. */
+/* Return the mean of the values on both sides of leaf i along axis d. */
 static inline double mesh_mean_along(const struct mesh *mesh, const double *v,
                                      int32_t i, int d) {
   const int32_t *face = mesh->cell_face[i];
   return 0.5 * (v[face[2 * d]] + v[face[2 * d + 1]]);
 }
 
-/* Mean of the face values on all sides of leaf i. */
+/* Return the mean of the values on all sides of leaf i. */
 static inline double mesh_mean(const struct mesh *mesh, const double *v,
                                int32_t i) {
   double sum = 0;
@@ -208,68 +214,69 @@ static inline double mesh_mean(const struct mesh *mesh, const double *v,
   return sum / NFACE;
 }
 
-/* Slope across face f < nfaces of what differs by this much between its nodes,
- * 1/m. */
+/* Return the slope across face f < nfaces, from the difference between its
+ * nodes. */
 static inline double mesh_slope(const struct mesh *mesh, int32_t f,
                                 double difference) {
   return difference / mesh->face_h[f];
 }
 
-/* Slope across face f < nfaces of a filled cell array v, 1/m. */
+/* Return the slope across face f < nfaces of a filled cell array v. */
 static inline double mesh_gradient(const struct mesh *mesh, const double *v,
                                    int32_t f) {
   const int32_t *node = mesh->face_node[f];
   return mesh_slope(mesh, f, v[node[1]] - v[node[0]]);
 }
 
-/* Slope of what differs by this much over an edge of leaf or ghost i, 1/m. */
+/* Return the slope in leaf or ghost i, from the difference over an edge. */
 static inline double mesh_leaf_slope(const struct mesh *mesh, int32_t i,
                                      double difference) {
   return difference / mesh->h[i];
 }
 
-/* Length in edges of leaf or ghost i: how many cells a front moves. */
+/* Return a length in edges of leaf or ghost i: how many cells a front moves. */
 static inline double mesh_edges(const struct mesh *mesh, int32_t i,
                                 double length) {
   return length / mesh->h[i];
 }
 
-/* Length in edges of face f < nfaces. */
+/* Return a length in edges of face f < nfaces. */
 static inline double mesh_face_edges(const struct mesh *mesh, int32_t f,
                                      double length) {
   return length / mesh->face_h[f];
 }
 
-/* Flatten the forest. Collective; the forest must outlive the mesh. */
+/* Make the mesh of a forest, which must outlive it. Collective; the caller owns
+ * the mesh. */
 struct mesh *mesh_new(struct forest *forest);
 void mesh_destroy(struct mesh *mesh);
 
-/* Make ghosts and helper nodes of n cell fields valid. v[k] [ncells];
- * bc[k] [MESH_MAX_PATCHES] says what holds on each patch; homogeneous: the
- * values at the boundary are taken as 0 (for corrections). Collective. */
+/* Fill ghosts and helper nodes of n cell arrays from their leaves. v[k]
+ * [ncells]; bc[k] [MESH_MAX_PATCHES] holds the conditions; homogeneous: their
+ * values are taken as 0 (for corrections). Collective. */
 void mesh_fill(const struct mesh *mesh, int n, double *const v[],
                const struct bc *const bc[], bool homogeneous);
-/* Fill potentials of forces per mass: not dv/dx but dv/dx / rho goes on
- * through a face, rho [ncells] filled. Pressure at an interface is one: a slope
- * taken across it would give the children of a gas leaf the pressure of grains,
- * which is rho_1/rho_2 too much for gas. Linear v is still exact where rho is
- * even. NULL: mesh_fill. */
+/* Fill arrays of which dv/dx / rho, not dv/dx, is continuous through a face, as
+ * the pressure at the surface of the grains: on a slope taken across the
+ * surface the children of a leaf of gas would get the pressure of grains, too
+ * much by rho_1/rho_2. rho [ncells] filled, NULL: as mesh_fill. Linear v is
+ * still exact where rho is even. Collective. */
 void mesh_fill_potential(const struct mesh *mesh, const double *rho, int n,
                          double *const v[], const struct bc *const bc[],
                          bool homogeneous);
-/* Spread a mark, 0 or more on leaves, by a leaf in every direction: 1 in those
- * that had it anywhere in their stencil, else 0. Children of a coarser leaf
- * have its mark, what lies beyond a boundary none. mark [ncells], valid on
- * leaves. Collective. */
+/* Spread a mark, 0 or more on leaves, by one leaf in every direction: set it to
+ * 1 in leaves that had it anywhere in their stencil, else to 0. Virtual
+ * children have the mark of their leaf, boundary nodes none. mark [ncells],
+ * valid on leaves. Collective. */
 void mesh_spread(const struct mesh *mesh, double *mark);
-/* Only copy leaf values to the ghosts of other ranks. v[k] [>= nleaves +
- * nghosts]. Collective. */
+/* Fill the ghosts only. v[k] [>= nleaves + nghosts]. Collective. */
 void mesh_fill_ghosts(const struct mesh *mesh, int n, double *const v[]);
-/* Copy face values to other ranks and average onto coarse sides. v[k]
- * [nfaces_all]. Collective. */
+/* Fill n face arrays from the faces of this rank: copy from other ranks, and
+ * average onto the sides of coarse leaves. v[k] [nfaces_all]. Collective. */
 void mesh_fill_faces(const struct mesh *mesh, int n, double *const v[]);
 
-/* Coefficients of a boundary node at distance h/2 from the wall. */
+/* Give the coefficients of a boundary node, h/2 beyond the wall: its value is
+ * a inside + b. */
 static inline void bc_ghost(const struct bc *bc, double h, double *a,
                             double *b) {
   if (bc->type == BC_NEUMANN) {
@@ -280,7 +287,7 @@ static inline void bc_ghost(const struct bc *bc, double h, double *a,
   }
 }
 
-/* Sum, maximum over ranks. Collective. */
+/* Return the sum or the maximum over ranks. Collective. */
 double mesh_sum(const struct mesh *mesh, double local);
 double mesh_max(const struct mesh *mesh, double local);
 
