@@ -49,8 +49,8 @@ static p4est_connectivity_t *brick_new(const struct forest_layout *l) {
 #endif
 }
 
-/* p4est numbers the trees of a brick in an order of its own; the first vertex
- * of each tells its place. */
+/* Find the places of the trees: p4est numbers them in an order of its own, and
+ * the first vertex of a tree tells its place. */
 static void brick_begin(struct forest *forest) {
   struct brick *brick = &forest->brick;
   const p4est_connectivity_t *conn = forest->connectivity;
@@ -315,7 +315,8 @@ static int wants_merge(p4est_t *p4est, p4est_topidx_t tree,
   return 1;
 }
 
-/* Both lists tile the same keys, so one walk matches them. */
+/* Match the old leaves with the new by one walk, as both lists tile the same
+ * keys. */
 static void map_make(const struct forest *forest, int32_t nold,
                      const uint64_t *old_key, const int8_t *old_level,
                      struct forest_map *map) {

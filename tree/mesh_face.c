@@ -61,8 +61,8 @@ static void number_own_faces(struct mesh *mesh) {
   mesh->face_begin[DIM] = mesh->nfaces = face;
 }
 
-/* Face f of a leaf that is not ours: numbered after our own, asked for
- * later. */
+/* Return face f of a leaf of another rank: numbered after those of this rank,
+ * asked for later. */
 static int32_t ghost_face(struct builder *b, int32_t leaf, int f,
                           int32_t *nghost) {
   const struct mesh *mesh = b->mesh;
@@ -76,7 +76,8 @@ static int32_t ghost_face(struct builder *b, int32_t leaf, int f,
   return face;
 }
 
-/* Faces on the fine side of face f of leaf i, which touches finer leaves. */
+/* List the faces on the fine side of face f of leaf i, which touches finer
+ * leaves. */
 static void fine_faces(struct builder *b, int32_t i, int f,
                        int32_t fine[NCHILD / 2], int32_t *nghost) {
   const struct mesh *mesh = b->mesh;

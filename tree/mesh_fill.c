@@ -20,9 +20,9 @@ static void fill_averages(const struct mesh *mesh, double *v) {
   }
 }
 
-/* v[node[1]] - v[node[0]] of the two neighbours of a leaf (or the leaf itself
- * for a missing one), as if rho were the leaf's throughout: across each face
- * dv/rho_f is kept, rho_f the mean of both sides. */
+/* Return v[node[1]] - v[node[0]] of the two neighbours of a leaf (or the leaf
+ * itself for a missing one), as if rho were the leaf's throughout: across each
+ * face dv/rho_f is kept, rho_f the mean of both sides. */
 static double weighted_difference(const double *rho, const double *v,
                                   int32_t leaf, const int32_t node[2]) {
   const double here = 2 * rho[leaf];
@@ -66,8 +66,8 @@ static void fill_boundaries(const struct mesh *mesh, double *v,
   }
 }
 
-/* Value of a condition that is the mean over patches; that of `patch`, whose
- * type of condition holds, if it has none. */
+/* Return the value of a condition that is the mean over patches, or that of
+ * `patch`, whose type of condition holds, if the face is not shared. */
 static double shared_value(const struct patch_shares *shares,
                            const struct bc *bc, int patch) {
   const enum bc_type type = bc[patch].type;

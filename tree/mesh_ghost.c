@@ -24,7 +24,8 @@ struct ghost_list {
   int32_t n, capacity;
 };
 
-/* Key of the region at integer offset o from x; false outside the domain. */
+/* Find the key of the region at integer offset o from x; returns false outside
+ * the domain. */
 static bool region_key(const struct builder *b, const int64_t x[DIM],
                        const int o[DIM], int level, uint64_t *key) {
   int64_t place[DIM];
@@ -73,7 +74,7 @@ static void find_receivers(struct builder *b, int32_t i,
   }
 }
 
-/* Counting sort of the list by rank into plan->send_index and `out`. */
+/* Sort the list, by counting, by rank into plan->send_index and `out`. */
 static struct ghost_leaf *sort_receivers(const struct ghost_list *list,
                                          struct plan *plan) {
   struct ghost_leaf *out = MEM_NEW(struct ghost_leaf, list->n);

@@ -21,8 +21,8 @@ static bool is_local(const struct builder *b, uint64_t key, int level) {
 
 static int32_t average_get(struct builder *b, uint64_t key, int level);
 
-/* Child of an average that this rank can add up: a leaf of its own, or an
- * average with leaves of its own below; else -1. */
+/* Return a child of an average that this rank can add up, a leaf of its own or
+ * an average with leaves of its own below; else -1. */
 static int32_t average_child_get(struct builder *b, uint64_t key, int level) {
   const struct mesh *mesh = b->mesh;
   if (!is_local(b, key, level)) return -1;
@@ -60,7 +60,7 @@ static int32_t virtual_get(struct builder *b, int32_t leaf, int child) {
   return node_name(KIND_VIRTUAL, (int64_t)b->group_of[leaf] * NCHILD + child);
 }
 
-/* Node of the given level that covers the region at `key`. */
+/* Return the node of the given level that covers the region at `key`. */
 static int32_t node_at(struct builder *b, uint64_t key, int level) {
   const struct mesh *mesh = b->mesh;
   int32_t leaf = hash_find(&b->hash, key, TAG_LEAF);
@@ -91,7 +91,8 @@ static void add_shares(struct builder *b, int32_t k, int d,
   mesh->shared[mesh->nshared - 1].across[d] = *shares;
 }
 
-/* Mirror image of the node at integer place x across the sides in o. */
+/* Return the mirror image of the node at integer place x across the sides in o.
+ */
 static int32_t boundary_get(struct builder *b, int32_t source,
                             const int64_t x[DIM], const int outside[DIM],
                             int level) {
@@ -187,7 +188,7 @@ static void ask_averages(struct builder *b) {
   mem_free(needed);
 }
 
-/* Virtual children of ghosts are interpolated where the ghost lives. */
+/* Ask the ranks of ghosts to interpolate their virtual children. */
 static void ask_virtuals(struct builder *b) {
   struct mesh *mesh = b->mesh;
   struct plan *plan = &mesh->exchange->virtual_node;
@@ -209,8 +210,8 @@ static void ask_virtuals(struct builder *b) {
   mem_free(asked);
 }
 
-/* Final numbers: averages from the finest level down, so that one loop can
- * add them up; virtual groups of our own leaves first. */
+/* Give averages their final numbers, from the finest level down, so that one
+ * loop can add them up; virtual groups of leaves of this rank come first. */
 static int32_t *order_averages(const struct builder *b) {
   int32_t *place = MEM_NEW(int32_t, b->naverages);
   int32_t begin[FOREST_MAX_LEVEL + 2] = {0};
@@ -254,8 +255,8 @@ static int32_t final_index(const struct mesh *mesh, const int32_t *average,
   }
 }
 
-/* Slope of a coarse leaf along axis d: centred where both neighbours are
- * cells or averages, else one-sided. */
+/* Set the slope of a coarse leaf along axis d: centred where both neighbours
+ * are cells or averages, else one-sided. */
 static void set_slope(struct mesh *mesh, int32_t group, int d) {
   const int32_t leaf = mesh->virtual_leaf[group];
   int32_t *node = mesh->virtual_slope[group][d];
@@ -320,7 +321,7 @@ static void set_plans(struct mesh *mesh, const int32_t *average,
   }
 }
 
-/* The NCHILD leaves from i on, if they are siblings, see each other. */
+/* Link the NCHILD leaves from i on with each other if they are siblings. */
 static void link_siblings(const struct mesh *mesh, int32_t i) {
   const int last = NCHILD - 1, level = mesh->level[i];
   if (level == 0 || i + last >= mesh->nleaves) return;
@@ -340,8 +341,9 @@ static void link_siblings(const struct mesh *mesh, int32_t i) {
   }
 }
 
-/* Nodes by name. Leaves of one size are in each other's stencil, so half of
- * them, and those between siblings, need no search. */
+/* Find the nodes of all stencils by name. Leaves of one size are in each
+ * other's stencil, so half of them, and those between siblings, need no search.
+ */
 static void find_nodes(struct builder *b) {
   const struct mesh *mesh = b->mesh;
   enum { UNKNOWN = 0xff };

@@ -31,8 +31,8 @@ struct advection_work {
   double *volume;          /* [nfaces_all] */
 };
 
-/* Normal velocity at faces and half steps into u_f [nfaces_all] (0 through
- * walls, whose patches are closed). u[e], g[e] filled. closed
+/* Set u_f [nfaces_all] to the normal velocity at faces and half steps (0
+ * through walls, whose patches are closed). u[e], g[e] filled. closed
  * [MESH_MAX_PATCHES]. Collective. */
 void advection_predict(const struct mesh *mesh, double dt, double *const u[DIM],
                        double *const g[DIM], const bool *closed,

@@ -5,12 +5,13 @@
 #ifndef TALUS_CAPACITY_H
 #define TALUS_CAPACITY_H
 
-/* Bytes that each rank may use, the least over all ranks; HUGE_VAL where the
- * system sets no limit and does not say what there is. Collective if MPI runs.
+/* Return the bytes that each rank may use, the least over all ranks; HUGE_VAL
+ * where the system sets no limit and does not say what there is. Collective if
+ * MPI runs.
  */
 double capacity_per_rank(void);
 
-/* The least limit of the control groups that `list` [a file as
+/* Return the least limit of the control groups that `list` [a file as
  * /proc/self/cgroup] names and of those above them, under `root`
  * [/sys/fs/cgroup]; HUGE_VAL if there is none. Not collective. */
 double capacity_of_groups(const char *list, const char *root);

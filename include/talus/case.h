@@ -31,8 +31,9 @@ struct case_file;
 enum { CASE_MAX_LEVEL_2D = 24, CASE_MAX_LEVEL_3D = 16, CASE_MAX_TREES = 32767 };
 
 /*
- * The text of a file, owned by the caller (mem_free), or NULL and errno if it
- * cannot be read. Files of more than 16 MB are refused (EFBIG). Not collective.
+ * Return the text of a file, owned by the caller (mem_free), or NULL and errno
+ * if it cannot be read. Files of more than 16 MB are refused (EFBIG). Not
+ * collective.
  */
 char *case_read_text(const char *path);
 
@@ -51,21 +52,21 @@ struct case_file *case_load_text(const char *path, const char *text,
 /* Frees the case and with it the functions that its params hold. */
 void case_destroy(struct case_file *file);
 
-/* What the case says, owned by the case and valid while it lives. Its functions
- * may be called on any rank; if one fails there the program ends, as a
- * USER_ERROR_ALONE that names the point. */
+/* Return the description of the case, owned by the case and valid while it
+ * lives. Its functions may be called on any rank; if one fails there the
+ * program ends, as a USER_ERROR_ALONE that names the point. */
 const struct params *case_params(const struct case_file *file);
 
-/* Something about the case that is no error but worth a word, as one line; NULL
- * if there is nothing. */
+/* Return one line about what is no error of the case but worth a word; NULL if
+ * there is nothing. */
 const char *case_note(const struct case_file *file);
 
-/* The value of what the case declares as param(name, ...), as text that the
- * case owns; NULL if it declares no such thing. */
+/* Return the value of what the case declares as param(name, ...), as text that
+ * the case owns; NULL if it declares no such thing. */
 const char *case_parameter(const struct case_file *file, const char *name);
 
-/* Whether grains.shape is positive at a point of a lattice of some 70,000 over
- * the box, or the grains fill it. */
+/* Tell whether grains.shape is positive at a point of a lattice of some 70,000
+ * over the box, or the grains fill it. */
 bool case_finds_grains(const struct case_file *file);
 
 /* Prints every parameter in use, one `key = value  unit  meaning` a line, those
@@ -76,9 +77,9 @@ void case_print(const struct case_file *file, FILE *f);
  * default, case, command line. Fields are quoted where csv needs it. */
 void case_write_parameters(const struct case_file *file, FILE *f);
 
-/* The checksum of row i of what is in use (below) or, behind the rows, of what
- * function i returned while the case was loaded. Returns its key, which the
- * case owns; NULL past the last. */
+/* Return the checksum of row i of what is in use (below) or, behind the rows,
+ * of what function i returned while the case was loaded. Returns its key, which
+ * the case owns; NULL past the last. */
 const char *case_checksum(const struct case_file *file, int i,
                           uint64_t *checksum);
 
@@ -86,8 +87,8 @@ const char *case_checksum(const struct case_file *file, int i,
  * that a tracer cannot have it. */
 bool case_name_is_taken(const char *name);
 
-/* What the case returns as `dimension`, 0 if that cannot be found out. Prints
- * nothing: who runs the case will find out why. */
+/* Return the `dimension` that the case gives, 0 if it cannot be found out;
+ * prints nothing, as running the case will tell why. */
 int case_dimension(const char *path, int noverrides, char *const overrides[]);
 
 /* Prints how a case is written and the table of its keys. */

@@ -55,12 +55,12 @@ struct checkpoint;
 struct checkpoint *checkpoint_open(MPI_Comm comm, const char *path,
                                    const char *model,
                                    const struct forest_layout *layout);
-/* The stored forest, owned by the caller. Collective. */
+/* Make the stored forest, owned by the caller. Collective. */
 struct forest *checkpoint_forest(struct checkpoint *checkpoint,
                                  const struct forest_layout *layout);
-/* Leaf and face values of every field with `restart` set, on a mesh of that
- * forest; ghosts and helpers are left to the caller, face copies are filled.
- * Collective; a field that is not in the file is a USER_ERROR. */
+/* Read leaf and face values of every field with `restart` set, on a mesh of
+ * that forest; ghosts and helpers are left to the caller, face copies are
+ * filled. Collective; a field that is not in the file is a USER_ERROR. */
 void checkpoint_read_fields(struct checkpoint *checkpoint,
                             const struct mesh *mesh, struct fields *fields);
 /* Read n lists of scalars. Collective; one that is missing or out of its range

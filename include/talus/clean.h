@@ -22,7 +22,7 @@
 
 struct clean;
 
-/* The tree above the leaves of `mesh`. Collective. */
+/* Make the tree above the leaves of `mesh`. Collective. */
 struct clean *clean_new(const struct mesh *mesh);
 void clean_destroy(struct clean *clean);
 
@@ -37,7 +37,7 @@ void clean_face_velocity(struct clean *clean, const struct mesh *mesh,
 void clean_to_source(struct clean *clean, const struct mesh *mesh,
                      const bool *open, const double *source, double *u_f);
 
-/* Largest |div u_f| over the leaves. Collective. */
+/* Return the largest |div u_f| over the leaves. Collective. */
 double clean_divergence(const struct mesh *mesh, const double *u_f);
 
 #endif

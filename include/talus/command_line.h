@@ -21,20 +21,22 @@ struct command_line {
   double max_walltime; /* s, 0: no bound */
 };
 
-/* The first word that is no option is the case, with or without `=` in it, the
- * others are overrides. Collective; whatever is wrong is a USER_ERROR.
- * `running` allows the options of `run`. */
+/* Read the words behind a command: the first that is no option is the case,
+ * with or without `=` in it, the others are overrides. Collective; whatever is
+ * wrong is a USER_ERROR. `running` allows the options of `run`. */
 void command_line_read(int argc, char *argv[], bool running,
                        struct command_line *line);
 
-/* A USER_ERROR if two of the words name=value give one name other values. */
+/* End the program (USER_ERROR) if two of the words name=value give one name
+ * different values. */
 void command_line_refuse_twice(int n, char *const words[]);
 
-/* The case file among the words behind `run` or `check`, and the overrides,
- * as command_line_read would find them; never fails. */
+/* Find the case file among the words behind `run` or `check`, and the
+ * overrides, as command_line_read would find them; never fails. */
 void command_line_find_case(int argc, char *argv[], struct command_line *line);
 
-/* Directory of the running program, in `directory` [size]; false if unknown. */
+/* Find the directory of the running program, into `directory` [size]; returns
+ * false if it is unknown. */
 bool command_own_directory(char *directory, int size);
 
 int command_info(int argc, char *argv[]);
@@ -42,9 +44,9 @@ int command_plot(int argc, char *argv[]);
 int command_rheology(int argc, char *argv[]);
 int command_help(int argc, char *argv[]);
 
-/* The commands, one a line. */
+/* Print the commands, one a line. */
 void command_usage(FILE *f);
-/* Whether one of the words behind a command is --help or -h. */
+/* Tell whether one of the words behind a command is --help or -h. */
 bool command_asks_help(int argc, char *argv[]);
 
 #endif

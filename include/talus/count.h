@@ -5,8 +5,8 @@
 
 #include <stdint.h>
 
-/* The count n, FATAL if it exceeds `most`; `what` is counted, "leaves". May be
- * called by one rank alone. */
+/* Return the count n of `what`, such as "leaves"; FATAL if n exceeds `most`.
+ * May be called by one rank alone. */
 int64_t count_check(int64_t n, int64_t most, const char *what);
 
 /* Give a count as an index or a count of MPI, checked. */

@@ -30,8 +30,9 @@ struct csv_expected {
                     last row; 0: it is something else */
 };
 
-/* USER_ERROR, which says what is missing, unless directory/name has the header
- * and begins with the rows of the mark. Changes nothing. Collective. */
+/* End the program (USER_ERROR, which says what is missing) unless
+ * directory/name has the header and begins with the rows of the mark. Changes
+ * nothing. Collective. */
 void csv_check(const char *directory, const struct csv_expected *expected);
 
 /* Open directory/name: afresh, or (`kept` != NULL) after the rows of that mark,
@@ -44,8 +45,8 @@ struct csv *csv_open(const char *directory, const char *name,
 struct csv_mark csv_sync(struct csv *csv);
 void csv_close(struct csv *csv);
 
-/* Cells of a row: numbers as they read back exactly (csv_real), to 12 digits
- * (csv_short) or whole; then the end of the row. Not collective. */
+/* Write a cell of a row, numbers as they read back exactly (csv_real), to 12
+ * digits (csv_short) or whole; then the end of the row. Not collective. */
 void csv_real(struct csv *csv, double value);
 void csv_short(struct csv *csv, double value);
 void csv_integer(struct csv *csv, int64_t value);

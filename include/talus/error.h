@@ -108,7 +108,7 @@ struct error_hooks {
 /* Set the rank, the number of ranks and the hooks; for program.c. */
 void base_set(int rank, int size, const struct error_hooks *hooks);
 
-/* What the macros above call; not meant to be used by name. */
+/* Serve the macros above; not meant to be called by name. */
 void base_fatal(const char *file, int line, const char *function,
                 const char *format, ...)
     __attribute__((format(printf, 4, 5), noreturn, cold));

@@ -59,13 +59,13 @@ struct forest_map {
   int8_t *level;    /* [nnew] */
 };
 
-/* Uniform forest at `level`. Collective. The layout is copied. */
+/* Make a uniform forest at `level`. Collective. The layout is copied. */
 struct forest *forest_new(MPI_Comm comm, const struct forest_layout *layout,
                           int level);
-/* Forest from a list of the levels of all leaves in Morton order, as
- * forest_levels gives it: `levels` [n] is this rank's contiguous share of
- * the global list. Collective. Returns NULL on all ranks if the levels do
- * not tile the brick. */
+/* Make a forest from a list of the levels of all leaves in Morton order, as
+ * forest_levels gives it: `levels` [n] is this rank's contiguous share of the
+ * global list. Collective. Returns NULL on all ranks if the levels do not tile
+ * the brick. */
 struct forest *forest_from_levels(MPI_Comm comm,
                                   const struct forest_layout *layout, int64_t n,
                                   const int8_t *levels);
@@ -79,7 +79,7 @@ int64_t forest_first_leaf(const struct forest *forest); /* global number of
 int forest_finest_level(const struct forest *forest);   /* collective */
 const struct forest_layout *forest_layout(const struct forest *forest);
 MPI_Comm forest_comm(const struct forest *forest);
-/* Levels of the local leaves in order, into levels [nleaves]. */
+/* Give the levels of the local leaves in order, levels [nleaves]. */
 void forest_levels(const struct forest *forest, int8_t *levels);
 
 /* Refine leaves flagged > 0 once, merge families whose leaves are all

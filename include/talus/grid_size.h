@@ -15,11 +15,11 @@
 
 struct params;
 
-/* Leaves at t = 0, over all ranks, at most params->max_cells of them. The same
- * on all ranks. */
+/* Estimate the leaves at t = 0 over all ranks, at most params->max_cells; the
+ * result is the same on all ranks. */
 double grid_size_leaves(const struct params *params);
-/* Bytes that a run needs for each: neighbours, helper nodes, fields, multigrid
- * and what is there twice while the grid changes. */
+/* Return the bytes that a run needs for each leaf: neighbours, helper nodes,
+ * fields, multigrid and what is there twice while the grid changes. */
 double grid_size_bytes(const struct params *params);
 
 #endif

@@ -36,7 +36,7 @@ static inline void hash_begin(struct hash *t, int64_t expected) {
 
 static inline void hash_end(struct hash *t) { mem_free(t->slot); }
 
-/* Slot that holds (key, tag), or the empty one where it belongs. */
+/* Return the slot that holds (key, tag), or the empty one where it belongs. */
 static inline struct hash_slot *hash_place(const struct hash *t, uint64_t key,
                                            int32_t tag) {
   uint64_t i = hash_start(key, tag) & t->mask;
@@ -47,7 +47,7 @@ static inline struct hash_slot *hash_place(const struct hash *t, uint64_t key,
   return &t->slot[i];
 }
 
-/* Value of (key, tag), or -1. */
+/* Return the value of (key, tag), or -1. */
 static inline int32_t hash_find(const struct hash *t, uint64_t key,
                                 int32_t tag) {
   return hash_place(t, key, tag)->next_value - 1;

@@ -37,15 +37,15 @@ void hdf5_write_group(struct hdf5_file *file, const char *name);
 /* Make a dataset: data [rows][columns], rows of this rank. */
 void hdf5_write(struct hdf5_file *file, const char *name, enum hdf5_type type,
                 int64_t rows, int columns, const void *data);
-/* The same, with data [n][columns] of the rows [first, first + n) of this rank
- * made by `fill` a piece at a time, in order, so that none is held whole.
- * A rank has fill called for its own rows only. */
+/* Write a dataset as hdf5_write, with data [n][columns] of the rows [first,
+ * first + n) of this rank made by `fill` a piece at a time, in order, so that
+ * none is held whole. A rank has fill called for its own rows only. */
 typedef void hdf5_fill(void *context, int64_t first, int64_t n, void *data);
 void hdf5_write_pieces(struct hdf5_file *file, const char *name,
                        enum hdf5_type type, int64_t rows, int columns,
                        hdf5_fill *fill, void *context);
-/* Size of a dataset over all ranks; false if there is none, or none of numbers
- * in one or two dimensions. */
+/* Read the size of a dataset over all ranks; returns false if there is none, or
+ * none of numbers in one or two dimensions. */
 bool hdf5_read_size(struct hdf5_file *file, const char *name, int64_t *rows,
                     int *columns);
 /* Read rows [first, first + rows), which may differ from rank to rank, of a
@@ -53,8 +53,9 @@ bool hdf5_read_size(struct hdf5_file *file, const char *name, int64_t *rows,
 void hdf5_read(struct hdf5_file *file, const char *name, enum hdf5_type type,
                int64_t first, int64_t rows, int columns, void *data);
 
-/* Attributes: a text, or n numbers (n >= 1). Reading gives false, and leaves
- * the values alone, if there is no attribute of that kind and size. */
+/* Write and read attributes: a text, or n numbers (n >= 1). Reading returns
+ * false, and leaves the values alone, if there is no attribute of that kind and
+ * size. */
 void hdf5_write_text(struct hdf5_file *file, const char *object,
                      const char *name, const char *text);
 void hdf5_write_real(struct hdf5_file *file, const char *object,

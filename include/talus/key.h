@@ -68,7 +68,7 @@ struct model_keys {
   size_t own_size;
 };
 
-/* Those of model k of src/models.c; NULL past the last. */
+/* Return the keys of model k of src/models.c; NULL past the last. */
 const struct model_keys *models_keys(int k);
 /* The names of all models; NULL at the end. */
 extern const char *const models_names[];

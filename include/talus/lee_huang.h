@@ -85,7 +85,7 @@ struct lee_huang_kinetic {
 };
 struct lee_huang_kinetic lee_huang_kinetic(const double *param, double nu);
 
-/* f_1 = p_ES/K at a solid fraction. */
+/* Return f_1 = p_ES/K at a solid fraction. */
 double lee_huang_packing(const double *param, double nu);
 
 /* Ends of the branches. */

@@ -52,7 +52,8 @@ void mem_free(void *p);
 /* Number of blocks of this rank that are not freed yet. */
 int64_t mem_live_blocks(void);
 
-/* The most memory this rank has held so far, libraries and all, in bytes. */
+/* Return the most memory this rank has held so far, libraries and all, in
+ * bytes. */
 int64_t mem_peak_resident(void);
 
 #endif

@@ -102,7 +102,8 @@ struct model_kind {
   int nstages;
 };
 
-/* Model k of the program, in the order of key `model`; NULL past the last. */
+/* Return model k of the program, in the order of key `model`; NULL past the
+ * last. */
 const struct model_kind *models_get(int k);
 
 /* The scalars of a struct model: time, dt, step. */

@@ -21,11 +21,11 @@
 
 #include "talus/mesh.h"
 
-/* band [ncells] = 1 for leaves with anything but one pure phase in their
- * stencil, and for rings - 1 layers of leaves around them, else 0; filled,
- * helper nodes made from a band leaf being > 0. The interface may cross a ring
- * in the sweeps along all axes, each of less than a cell. c filled.
- * Collective. */
+/* Set band [ncells] to 1 in leaves with anything but one pure phase in their
+ * stencil and in rings - 1 layers of leaves around them, else to 0; it is
+ * filled, helper nodes made from a leaf of the band being > 0. A ring is as far
+ * as the surface may move in the sweeps along all axes, each of less than a
+ * cell. c filled. Collective. */
 void momentum_mark_band(const struct mesh *mesh, const double *c, int rings,
                         double *band);
 /* Does the face carry momentum in the sweeps? */
@@ -42,8 +42,8 @@ struct momentum_flux {
   double *slope[DIM];   /* [>= nleaves + nghosts] scratch */
 };
 
-/* Fluxes of the sweep along d. c before the sweep; flux: of c (vof_flux);
- * u[e] filled. Collective. */
+/* Find the fluxes of the sweep along d. c before the sweep; flux: of c
+ * (vof_flux); u[e] filled. Collective. */
 void momentum_flux(const struct mesh *mesh, int d, double dt,
                    const double density[2], const double *u_f, const double *c,
                    const double *flux, const double *band, double *const u[DIM],

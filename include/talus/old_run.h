@@ -11,12 +11,12 @@
 
 #include <stdbool.h>
 
-/* USER_ERROR if a file that a run writes is there and is not of a run of ours.
- * Changes nothing. Collective. */
+/* End the program (USER_ERROR) if a file that a run writes is there and is not
+ * of a run of ours. Changes nothing. Collective. */
 void old_run_check(const char *directory);
 
-/* The time that the run in the directory came to; false, on all ranks but 0
- * always, if there is none. */
+/* Find the time that the run in the directory came to, on rank 0; returns false
+ * if there is none, and on the other ranks. */
 bool old_run_time(const char *directory, double *time);
 
 /* Remove what a run of ours left and a new one would not write over at once:

@@ -33,18 +33,18 @@ struct outline {
   double *height;  /* [n[1]][n[0]], m, owned */
 };
 
-/* The vertical axis for this gravity. */
+/* Return the vertical axis for this gravity. */
 int outline_axis(const double gravity[DIM]);
-/* Columns along `axis` of the leaves with heap[i], c [nleaves]. Collective,
- * the same on all ranks. Columns are made wider, with a warning, if there would
- * be more than 2^24. Free with outline_free. */
+/* Measure the columns along `axis` of the leaves with heap[i], c [nleaves].
+ * Collective, the same on all ranks. Columns are made wider, with a warning, if
+ * there would be more than 2^24. Free with outline_free. */
 void outline_measure(const struct mesh *mesh, const double *c, const bool *heap,
                      int axis, struct outline *outline);
 void outline_free(struct outline *outline);
 
-/* Largest height, m. */
+/* Return the largest height, m. */
 double outline_height(const struct outline *outline);
-/* The front, m; without any grains the lower side in 2D, 0 in 3D. */
+/* Return the front, m; without any grains the lower side in 2D, 0 in 3D. */
 double outline_front(const struct outline *outline);
 
 #endif

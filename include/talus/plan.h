@@ -29,7 +29,7 @@ struct plan_request {
 
 /* A type of MPI for things of so many bytes, to be freed by the caller. */
 MPI_Datatype plan_type_new(size_t bytes);
-/* An empty plan. */
+/* Begin an empty plan. */
 void plan_begin(struct plan *plan, MPI_Comm comm);
 void plan_end(struct plan *plan);
 /* Fix the receiving half from n requests (sorted by rank in place) and tell
@@ -41,7 +41,7 @@ struct plan_request *plan_ask(struct plan *plan, int64_t n,
 /* Send v[k][send_index] and put (or add) what arrives into v[k][recv_index];
  * each index stands for `block` consecutive entries. Collective. */
 void plan_run(struct plan *plan, int n, double *const v[], int block, bool add);
-/* The same in single precision, block = 1. */
+/* Run a plan as plan_run, in single precision, block = 1. */
 void plan_run_float(struct plan *plan, int n, float *const v[], bool add);
 
 #endif

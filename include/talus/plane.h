@@ -50,37 +50,38 @@
 enum { PLANE_STENCIL = DIM == 2 ? 9 : 27 };
 
 /*
- * Fraction of the cell with n . x <= alpha, equation (2): 0 to 1.
+ * Return the fraction of the cell with n . x <= alpha, equation (2): 0 to 1.
  * Error below 1e-15; V(n, alpha) + V(-n, -alpha) = 1 to one rounding.
  */
 double plane_volume(const double n[DIM], double alpha);
 
 /*
- * The alpha for which plane_volume(n, alpha) = c; c is cut to [0, 1].
+ * Return the alpha for which plane_volume(n, alpha) = c; c is cut to [0, 1].
  * The volume of the result differs from c by less than 1e-15.
  */
 double plane_alpha(const double n[DIM], double c);
 
 /*
- * Fraction OF THE BOX lo[d] <= x[d] <= hi[d] with n . x <= alpha: 0 to 1.
- * The box is any part of the cell (a child, the volume that crosses a face in
- * one step) or even outside it. The volumes of boxes that tile the cell add up
- * to plane_volume to round-off. A box without volume gives a number in [0, 1].
+ * Return the fraction OF THE BOX lo[d] <= x[d] <= hi[d] with n . x <= alpha: 0
+ * to 1. The box is any part of the cell (a child, the volume that crosses a
+ * face in one step) or even outside it. The volumes of boxes that tile the cell
+ * add up to plane_volume to round-off. A box without volume gives a number in
+ * [0, 1].
  */
 double plane_box_volume(const double n[DIM], double alpha, const double lo[DIM],
                         const double hi[DIM]);
 
 /*
- * Centroid x of the interface inside the cell: midpoint of the segment (2D),
- * centroid of the polygon (3D). A plane that misses the cell gives its nearest
- * corner, edge or face; n = 0 gives the centre of the cell.
+ * Find the centroid x of the interface inside the cell: midpoint of the segment
+ * (2D), centroid of the polygon (3D). A plane that misses the cell gives its
+ * nearest corner, edge or face; n = 0 gives the centre of the cell.
  */
 void plane_centroid(const double n[DIM], double alpha, double x[DIM]);
 
 /*
- * Normal of the interface, |n|_1 = 1, from the volume fractions of the cell and
- * its neighbours: exact for a plane, and the mixed Youngs-centred normal
- * [aulisa_2007] where no plane fits.
+ * Find the normal of the interface, |n|_1 = 1, from the volume fractions of the
+ * cell and its neighbours: exact for a plane, and the mixed Youngs-centred
+ * normal [aulisa_2007] where no plane fits.
  *
  * c[(i+1) + 3 (j+1) + 9 (k+1)] is the fraction c_k of the neighbour at offset
  * o_k = (i, j, k), each -1, 0 or 1.

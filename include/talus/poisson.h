@@ -40,7 +40,7 @@ struct solve_stats poisson_solve(const struct mesh *mesh,
                                  double tolerance, int max_iterations,
                                  double *p);
 
-/* flux [nfaces_all] = alpha dp/dn on all faces; p [ncells] filled.
+/* Set flux [nfaces_all] to alpha dp/dn on all faces; p [ncells] filled.
  * Collective. */
 void poisson_flux(const struct mesh *mesh, const double *alpha_f,
                   const double *p, double *restrict flux);

@@ -13,15 +13,16 @@
 struct params;
 struct profile;
 
-/* USER_ERROR unless directory/profile.csv has the tracers of `params` and the
- * rows of the mark, none of them after `last_time`. Collective. */
+/* End the program (USER_ERROR) unless directory/profile.csv has the tracers of
+ * `params` and the rows of the mark, none of them after `last_time`.
+ * Collective. */
 void profile_check(const char *directory, const struct params *params,
                    const struct csv_mark *mark, double last_time);
 /* Open directory/profile.csv, with the tracers of `params`: afresh, or after
  * the rows of `kept`, if not NULL. Collective. */
 struct profile *profile_open(const char *directory, const struct params *params,
                              const struct csv_mark *kept);
-/* csv_sync. */
+/* Bring all rows to the disk (csv_sync). */
 struct csv_mark profile_sync(struct profile *profile);
 /* Add the outline at a time: n[0] n[1] columns (n[1] == 1 in 2D) with centres
  * first[d] + i spacing, height [n[1]][n[0]] and layer [ntracers][n[1]][n[0]] of

@@ -10,7 +10,7 @@
 
 struct progress;
 
-/* A run to time `stop`. Not collective. */
+/* Begin the progress of a run to time `stop`. Not collective. */
 struct progress *progress_new(double stop, bool quiet);
 /* Tell what is being done before the first step, and what part of it is done;
  * shown as often. */
@@ -19,12 +19,13 @@ void progress_start(struct progress *progress, const char *what, double part,
 /* Tell of a finished step; shown a few times a second at most. */
 void progress_step(struct progress *progress, int64_t step, double time,
                    double dt, int64_t cells);
-/* A line of its own, unless quiet; the line of progress stays above. */
+/* Print a line of its own, unless quiet; the line of progress stays above. */
 void progress_say(struct progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void progress_destroy(struct progress *progress);
 
-/* Time left as people say it, "1 h 05 min", in `text` [32], returned. */
+/* Write a duration as people say it, "1 h 05 min", into `text` [32]; returns
+ * `text`. */
 char *progress_duration(double seconds, char text[32]);
 
 #endif

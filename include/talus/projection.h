@@ -46,16 +46,16 @@ struct projection {
 struct solve_stats projection_project(const struct projection *projection,
                                       double dt, double *u_f, double *p);
 
-/* u_f [nfaces_all] = mean of the nodes' velocity, weighted by density, + dt
- * gravity; the boundary value on closed patches. u[d] filled. Collective.
- * The plain mean would give a light cell's velocity half the say in what the
- * projection then makes a heavy one do: grains that move through gas at rest
- * would be thrown forward at their sides (test_step.c). */
+/* Set u_f [nfaces_all] to the mean velocity of the nodes, weighted by density,
+ * + dt gravity, and to the boundary value on closed patches. u[d] filled.
+ * Collective. The plain mean would give a light cell's velocity half the say in
+ * what the projection then makes a heavy one do: grains that move through gas
+ * at rest would be thrown forward at their sides (test_step.c). */
 void projection_face_velocity(const struct projection *projection, double dt,
                               double *const u[DIM], double *u_f);
 
-/* g[d] [nleaves] = mean over the faces of gravity - alpha grad p, from the
- * flux of the last projection; face [nfaces_all] scratch. */
+/* Set g[d] [nleaves] to the mean over the faces of gravity - alpha grad p, from
+ * the flux of the last projection; face [nfaces_all] scratch. */
 void projection_acceleration(const struct projection *projection, double *face,
                              double *const g[DIM]);
 

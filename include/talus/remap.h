@@ -27,8 +27,8 @@ extern const struct field_rule remap_linear;
  * between the two sides, so that leaves stay solenoidal. */
 extern const struct field_rule remap_faces;
 
-/* Parts of rules: the value of the old leaf around a new one, that on its
- * slopes, and the mean of the old leaves in a new one. */
+/* Serve as parts of rules: return the value of the old leaf around a new one,
+ * that on its slopes, and the mean of the old leaves in a new one. */
 double remap_value(const struct remap *remap, const struct field *field,
                    int32_t leaf);
 double remap_on_slopes(const struct remap *remap, const struct field *field,

@@ -77,7 +77,8 @@ typedef void rheology_function(const struct rheology *r, int32_t n,
                                const double *restrict pressure,
                                double *restrict out);
 
-/* The same from a function of the user, who may look at the time, s. */
+/* Computes viscosity as rheology_function, by a function of the user that may
+ * look at the time, s. */
 typedef void rheology_user_function(void *context, double time, int32_t n,
                                     const double *shear_rate,
                                     const double *pressure, double *eta);
@@ -141,16 +142,17 @@ struct rheology {
  * does. Call once at the start; without it they end in abort(). */
 void rheology_begin(void);
 
-/* The closure of this name, NULL if there is none. */
+/* Return the closure of this name, NULL if there is none. */
 const struct rheology_model *rheology_find(const char *name);
 
-/* Closure i of the list, NULL if i is out of range. */
+/* Return closure i of the list, NULL if i is out of range. */
 const struct rheology_model *rheology_get(int i);
 
 /*
- * Key i of a model: its own, then those all models share (eta_min, eta_max,
- * gamma_r, cohesion); NULL past the last. This is the list to loop over for
- * help and logs and to find a key's range; rheology_value gives its value in r.
+ * Return key i of a model: its own, then those all models share (eta_min,
+ * eta_max, gamma_r, cohesion); NULL past the last. This is the list to loop
+ * over for help and logs and to find a key's range; rheology_value gives its
+ * value in r.
  */
 const struct rheology_key *rheology_key(const struct rheology_model *model,
                                         int i);
@@ -165,7 +167,7 @@ void rheology_init(struct rheology *r, const struct rheology_model *model);
  */
 int rheology_set(struct rheology *r, const char *key, double value);
 
-/* The first key without a value, NULL if r is complete. */
+/* Return the first key without a value, NULL if r is complete. */
 const struct rheology_key *rheology_missing(const struct rheology *r);
 
 /* Choose (2), (3) or (4) by name; returns 0, or -1 for an unknown name. The
@@ -183,23 +185,25 @@ const char *rheology_prepare(struct rheology *r);
 void rheology_release(struct rheology *r);
 
 /*
- * Viscosity eta[i], Pa s, from shear_rate[i] >= 0, 1/s, equation (1), and
- * pressure[i], Pa, at a time, s, that only a function of the user looks at. All
- * [n]; eta overlaps neither of the others. Works on blocks that fit the cache
- * and allocates nothing.
+ * Compute the viscosity eta[i], Pa s, from shear_rate[i] >= 0, 1/s, equation
+ * (1), and pressure[i], Pa, at a time, s, that only a function of the user
+ * looks at. All [n]; eta overlaps neither of the others. Works on blocks that
+ * fit the cache and allocates nothing.
  */
 void rheology_eval(const struct rheology *r, double time, int32_t n,
                    const double *shear_rate, const double *pressure,
                    double *eta);
 
-/* Quantity k < r->model->noutputs of the same; all [n]. */
+/* Compute quantity k < r->model->noutputs as rheology_eval does the viscosity;
+ * all [n]. */
 void rheology_output(const struct rheology *r, int k, int32_t n,
                      const double *shear_rate, const double *pressure,
                      double *out);
 
-/* The first window of inertial numbers between 1e-8 and 1e8 in which (5) holds;
- * 0 or INFINITY where it reaches an end. False if there is none or the closure
- * is not one of mu(I). Bounds, regularisation and cohesion are left out. */
+/* Find the first window of inertial numbers between 1e-8 and 1e8 in which (5)
+ * holds; 0 or INFINITY where it reaches an end. False if there is none or the
+ * closure is not one of mu(I). Bounds, regularisation and cohesion are left
+ * out. */
 bool rheology_window(const struct rheology *r, double window[2]);
 
 #endif

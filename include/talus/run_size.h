@@ -17,17 +17,18 @@ struct run_size {
 
 enum { RUN_SIZE_LENGTH = 256 };
 
-/* Memory that the job may use: that of the poorest rank, times ranks.
- * Collective. */
+/* Return the memory that the job may use: that of the poorest rank, times
+ * ranks. Collective. */
 double run_size_room(void);
 /* Estimate the size of a run. Collective. */
 void run_size_estimate(const struct params *params, struct run_size *size);
 /* Say it: "about 1.12e+05 cells at the start, 101 MB of the 24.6 GB that this
  * job may use". */
 void run_size_text(const struct run_size *size, char text[RUN_SIZE_LENGTH]);
-/* USER_ERROR if the run takes more than there is. Collective. */
+/* End the program (USER_ERROR) if the run takes more than there is. Collective.
+ */
 void run_size_check(const struct run_size *size);
-/* Leaves for which there is room, 0 for no bound. */
+/* Return the number of leaves for which there is room, 0 for no bound. */
 int64_t run_size_most_leaves(const struct params *params,
                              const struct run_size *size);
 /* Warn on stderr if there is no room. Not collective. */

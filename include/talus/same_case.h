@@ -5,8 +5,8 @@
 
 struct case_file;
 
-/* The key of the first parameter or function in which ranks differ, as this
- * rank knows it, owned by the case; NULL: they agree. Collective. */
+/* Return the key of the first parameter or function in which ranks differ, as
+ * this rank knows it, owned by the case; NULL: they agree. Collective. */
 const char *same_case_difference(const struct case_file *file);
 
 #endif

@@ -10,9 +10,9 @@
 
 struct series;
 
-/* USER_ERROR unless directory/series.csv has these columns and the rows of the
- * mark, which was made after `last_step`; `every` of params.h serves the
- * message. Collective.
+/* End the program (USER_ERROR) unless directory/series.csv has these columns
+ * and the rows of the mark, which was made after `last_step`; the message needs
+ * `every`, series_every of params.h. Collective.
  */
 void series_check(const char *directory, int ncolumns,
                   const struct column *columns, const struct csv_mark *mark,
@@ -22,7 +22,7 @@ void series_check(const char *directory, int ncolumns,
 struct series *series_open(const char *directory, int ncolumns,
                            const struct column *columns,
                            const struct csv_mark *kept);
-/* csv_sync. */
+/* Bring all rows to the disk (csv_sync). */
 struct csv_mark series_sync(struct series *series);
 /* Add a row, value [ncolumns]; the values of rank 0 count. */
 void series_write(struct series *series, const double value[]);

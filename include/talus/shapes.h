@@ -36,16 +36,17 @@
 #define TALUS_SHAPES_H
 
 /*
- * Value of a level set at x, positive inside the grains; any unit. Always three
- * coordinates, x[2] = 0 in two dimensions. `context` is the caller's.
+ * Return the value of a level set at x, positive inside the grains; any unit.
+ * Always three coordinates, x[2] = 0 in two dimensions. `context` is the
+ * caller's.
  */
 typedef double (*shape_level_set)(void *context, const double x[3]);
 
 /*
- * Fraction (1) of the square or cube of edge h around `centre` filled by f > 0:
- * 0 to 1. depth >= 0; 3 is enough for smooth surfaces. Calls f about
- * 17 (2^depth) times (2D) or 17 (4^depth) times (3D) where the surface passes,
- * 2^DIM + 1 times in most other cells.
+ * Return the fraction (1) of the square or cube of edge h around `centre`
+ * filled by f > 0: 0 to 1. depth >= 0; 3 is enough for smooth surfaces. Calls f
+ * about 17 (2^depth) times (2D) or 17 (4^depth) times (3D) where the surface
+ * passes, 2^DIM + 1 times in most other cells.
  */
 double shape_fraction(shape_level_set f, void *context,
                       const double centre[DIM], double h, int depth);

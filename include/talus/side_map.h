@@ -57,8 +57,8 @@ uint32_t side_map_within(const struct side_map *map, const double lo[2],
 /* List the boundaries that the function has returned, other than on the border
  * of the side, a bit for each. */
 uint32_t side_map_seen(const struct side_map *map);
-/* Length or area of the side that each boundary covers, [SIDE_MAP_MOST], m or
- * m^2. Owned by the map. */
+/* Return the length or area of the side that each boundary covers,
+ * [SIDE_MAP_MOST], m or m^2. Owned by the map. */
 const double *side_map_covered(const struct side_map *map);
 /* Measure the faces of the finest level that each boundary takes: their length
  * or area into taken [SIDE_MAP_MOST], m or m^2. */

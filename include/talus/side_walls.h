@@ -39,7 +39,8 @@ void side_walls_drag(const struct mesh *mesh, const struct side_walls *walls,
                      double dt, double creep,
                      const struct side_walls_state *state, double *drag);
 
-/* Power, W/m, that goes into the walls: sum drag |u|^2 V. Collective. */
+/* Return the power, W/m, that goes into the walls: sum drag |u|^2 V.
+ * Collective. */
 double side_walls_power(const struct mesh *mesh, const double *drag,
                         double *const u[DIM]);
 

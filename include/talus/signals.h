@@ -17,10 +17,10 @@ void signals_catch(void);
 /* Remembers signals from now on. Not collective. */
 void signals_remember(void);
 
-/* The signal that came last, 0 if none did. This rank only. */
+/* Return the signal that came last, 0 if none did. This rank only. */
 int signals_caught(void);
 
-/* "SIGINT" and so on, "a signal" of others. */
+/* Return the name of a signal, "SIGINT" and so on, "a signal" of others. */
 const char *signals_name(int number);
 
 #endif

@@ -27,8 +27,8 @@ struct fields;
 struct mesh;
 struct snapshots;
 
-/* The snapshots of a run in `directory`; `count` of them are there already
- * (a restart; else 0). Collective. */
+/* Begin or go on with the snapshots of a run in `directory`; `count` of them
+ * are there already (a restart; else 0). Collective. */
 struct snapshots *snapshots_new(const char *directory, int count);
 void snapshots_destroy(struct snapshots *snapshots);
 

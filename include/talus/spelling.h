@@ -3,9 +3,9 @@
 #ifndef TALUS_SPELLING_H
 #define TALUS_SPELLING_H
 
-/* The word that needs the fewest letters added, dropped, changed or swapped to
- * become `word`, in whatever case; NULL if none looks alike (more than a third
- * of it differs).
+/* Return the word that needs the fewest letters added, dropped, changed or
+ * swapped to become `word`, in whatever case; NULL if none looks alike (more
+ * than a third of it differs).
  *   words  [n], entries may be NULL */
 const char *spelling_nearest(const char *word, int n, const char *const *words);
 

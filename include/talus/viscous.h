@@ -50,7 +50,7 @@ struct solve_stats viscous_solve(const struct mesh *mesh,
                                  double tolerance, int max_iterations,
                                  double *const u[DIM]);
 
-/* force[d] [nleaves] = (div 2 eta D(u))_d; u[d] [ncells] filled.
+/* Set force[d] [nleaves] to (div 2 eta D(u))_d; u[d] [ncells] filled.
  * Collective. */
 void viscous_force(const struct mesh *mesh, const double *eta_f,
                    const struct skin *skin, double *const u[DIM],

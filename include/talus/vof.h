@@ -30,29 +30,29 @@ static inline bool vof_is_cut(double c) {
   return c > VOF_EMPTY && c < 1 - VOF_EMPTY;
 }
 
-/* Planes of all cut leaves, and of ghosts: normal[DIM] and alpha, each
+/* Find the planes of all cut leaves, and of ghosts: normal[DIM] and alpha, each
  * [>= nleaves + nghosts]. c must be filled. Collective. */
 void vof_reconstruct(const struct mesh *mesh, const double *c,
                      double *const normal[DIM], double *alpha);
 
-/* Plane of one leaf from its filled stencil: from cells and averages; what is
- * interpolated from a coarser leaf, or mirrored in a wall, only helps to find
- * a start. Exact for a plane surface. */
+/* Find the plane of one leaf from the leaves, ghosts and averages in its filled
+ * stencil; virtual children and boundary nodes only help to find a start. Exact
+ * for a plane surface. */
 void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
                double n[DIM], double *alpha);
 
-/* Fluxes F of c through the faces of axis d; flux [nfaces_all] is valid on
- * all of them afterwards. u_f [nfaces_all], m/s; c filled. open
+/* Find the fluxes F of c through the faces of axis d; flux [nfaces_all] is
+ * valid on all of them afterwards. u_f [nfaces_all], m/s; c filled. open
  * [MESH_MAX_PATCHES]: patches through which only gas flows in, for the grains
  * at them are not mirrored there; NULL: none. Collective. */
 void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
               const bool *open, const double *c, double *const normal[DIM],
               const double *alpha, double *flux);
 
-/* cc [nleaves] = 1 where c > 1/2. */
+/* Set cc [nleaves] to 1 where c > 1/2, else to 0. */
 void vof_freeze(const struct mesh *mesh, const double *c, double *cc);
 
-/* The update of the sweep along d. c [nleaves] in/out. */
+/* Update c by the sweep along d. c [nleaves] in/out. */
 void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
                 const double *flux, const double *cc, double *c);
 
@@ -60,7 +60,7 @@ void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
  * plane, merged ones take the mean, so that volume is conserved. */
 extern const struct field_rule vof_rule;
 
-/* How far c lies out of [0, 1] in the leaves of this rank. */
+/* Return how far c lies out of [0, 1] in the leaves of this rank. */
 double vof_excess(const struct mesh *mesh, const double *c);
 
 #endif

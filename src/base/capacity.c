@@ -15,7 +15,8 @@ enum { LENGTH = 4096 };
 
 static double least(double a, double b) { return a < b ? a : b; }
 
-/* The number in a file; HUGE_VAL for "max", or where there is no such file. */
+/* Return the number in a file; HUGE_VAL for "max", or where there is no such
+ * file. */
 static double read_limit(const char *path) {
   char text[64] = "";
   char *end;
@@ -28,7 +29,7 @@ static double read_limit(const char *path) {
   return end > text && limit > 0 && limit < 0x1p62 ? limit : HUGE_VAL;
 }
 
-/* The least limit of a group and of those above it. */
+/* Return the least limit of a group and of those above it. */
 static double limit_of_group(const char *root, const char *folder,
                              const char *group, const char *file) {
   char part[LENGTH], path[3 * LENGTH];
@@ -43,7 +44,8 @@ static double limit_of_group(const char *root, const char *folder,
   return limit;
 }
 
-/* Lines are "number:controllers:/group", without controllers in version 2. */
+/* Read lines of the form "number:controllers:/group", without controllers in
+ * version 2. */
 double capacity_of_groups(const char *list, const char *root) {
   char line[LENGTH];
   double limit = HUGE_VAL;

@@ -65,7 +65,7 @@ int base_rank(void) { return rank; }
 
 int base_size(void) { return size; }
 
-/* Last words of one rank, and the end of all of them. */
+/* Print the last words of one rank and end all ranks. */
 static _Noreturn void die(const char *file, int line, const char *function,
                           const char *message) {
   /* One call, so that the words of several ranks do not mix. */
@@ -105,7 +105,7 @@ static void say_error(const char *format, va_list arguments) {
   record("error: %s", message);
 }
 
-/* Last words in good order, of rank 0, and the end. */
+/* Print the last words of rank 0 and end the program in good order. */
 static _Noreturn void end_in_order(int status, const char *format,
                                    va_list arguments) {
   call(hooks.before); /* mpirun ends the others as soon as one has gone */
@@ -127,7 +127,7 @@ void base_system_error(const char *format, ...) {
   end_in_order(EXIT_SYSTEM, format, arguments);
 }
 
-/* Until lower ranks, which may have found the same, have had their say. */
+/* Wait until lower ranks, which may have found the same, have had their say. */
 static void wait_for_lower_ranks(void) {
   const int64_t wait = rank == 0 ? 0 : 1000 + 20 * (int64_t)rank; /* ms */
   nanosleep(&(struct timespec){.tv_sec = wait / 1000,

@@ -16,7 +16,8 @@ void mem_begin(void) {
 #endif
 }
 
-/* Bytes of an array, at least one so that every block has an address. */
+/* Return the bytes of an array, at least one so that every block has an
+ * address. */
 static size_t array_bytes(size_t count, size_t size) {
   /* Half the address space is more than any allocator gives, and leaves room
    * for rounding up. */
@@ -36,7 +37,7 @@ static void *fail_unless_allocated(void *p, size_t bytes) {
   return p;
 }
 
-/* A block on a cache line, contents undefined. */
+/* Allocate a block on a cache line, contents undefined. */
 static void *alloc_aligned(size_t bytes) {
   /* C11 wants a multiple of the alignment. */
   size_t rounded = (bytes + MEM_ALIGNMENT - 1) / MEM_ALIGNMENT * MEM_ALIGNMENT;

@@ -102,7 +102,8 @@ static void unpack(const struct plan *plan, int n, double *const v[], int block,
   }
 }
 
-/* Room in the buffer for `each` numbers per index: what is sent first. */
+/* Make room in the buffer for `each` numbers per index, those that are sent
+ * first. */
 static void reserve(struct plan *plan, int64_t each) {
   const int64_t n = ((int64_t)plan->send_begin[plan->nranks] +
                      plan->recv_begin[plan->nranks]) *
@@ -112,7 +113,7 @@ static void reserve(struct plan *plan, int64_t each) {
   plan->buffer = mem_resize(plan->buffer, (size_t)n, sizeof(double));
 }
 
-/* Where in the buffer what arrives begins. */
+/* Return where in the buffer the arriving numbers begin. */
 static double *arrivals(const struct plan *plan, int64_t each) {
   return plan->buffer + plan->send_begin[plan->nranks] * each;
 }

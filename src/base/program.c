@@ -41,7 +41,8 @@ static bool mpi_runs(void) {
   return begun && !ended;
 }
 
-/* Forgotten memory is a bug, but not one to spoil a result that is there. */
+/* Report memory that was not freed: a bug, but not one to spoil a result that
+ * is there. */
 static void report_leaks(void) {
 #ifndef NDEBUG
   if (mem_live_blocks() != 0)
@@ -50,12 +51,12 @@ static void report_leaks(void) {
 #endif
 }
 
-/* Started without a launcher, Open MPI forks a daemon to spawn further
- * processes from, and waits for networks to answer, unless told that nobody
- * will ask for either. All such processes of a user make and remove the same
- * directory for themselves, and one in some hundred of those that start at the
- * same time fails as another removes it: none is needed. What the user has set
- * stands. */
+/* Tell Open MPI that nobody will ask for further processes. Started without a
+ * launcher, it forks a daemon to spawn further processes from, and waits for
+ * networks to answer, unless told that nobody will ask for either. All such
+ * processes of a user make and remove the same directory for themselves, and
+ * one in some hundred of those that start at the same time fails as another
+ * removes it: none is needed. What the user has set stands. */
 static void expect_no_others(void) {
   if (launcher_rank() != NULL) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);

@@ -25,7 +25,7 @@ static volatile sig_atomic_t caught;
 
 static void remember(int number) { caught = number; }
 
-/* In a handler only write and _exit are safe. */
+/* Print a text from a handler, where only write and _exit are safe. */
 static void say(const char *text) {
   if (write(STDERR_FILENO, text, strlen(text)) < 0) return;
 }

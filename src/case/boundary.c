@@ -13,7 +13,7 @@ static const struct boundary_kind *find_kind(const char *name) {
   return NULL;
 }
 
-/* The type named by the string, or the first element, on top. */
+/* Return the type named by the string, or the first element, on top. */
 static const struct boundary_kind *read_kind(struct case_file *file,
                                              const char *path) {
   lua_State *L = file->L;
@@ -123,7 +123,8 @@ static struct boundary *new_patch(struct case_file *file, const char *name) {
   return boundary;
 }
 
-/* The solver needs one per axis, as slip depends on the normal. */
+/* Return the largest number of patches: the solver needs one per axis, as slip
+ * depends on the normal. */
 static int most_patches(const struct case_file *file) {
   return CASE_MAX_PATCHES / file->params.dimension;
 }
@@ -152,7 +153,7 @@ void boundary_read_patches(struct case_file *file) {
   lua_pop(L, 1);
 }
 
-/* Which boundary: the side itself for "no_slip", else a patch. */
+/* Return which boundary: the side itself for "no_slip", else a patch. */
 static int select_boundary(void *context, int side, const double x[3]) {
   struct case_file *file = (struct case_file *)context;
   if (file->side_function[side] == NULL) return side;
@@ -186,8 +187,8 @@ static void check_periodic(struct case_file *file) {
   }
 }
 
-/* A box has one pressure: that of its outflows, or where there are none its
- * level. */
+/* Refuse a second pressure: a box has that of its outflows, or its level where
+ * there are none. */
 static void check_pressure_twice(struct case_file *file) {
   char path[PATH_LENGTH];
   if (!file->params.pressure_level_given) return;

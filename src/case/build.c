@@ -34,8 +34,8 @@ static const struct model_keys *model_of(const struct case_file *file) {
   return models_keys(file->params.model);
 }
 
-/* The keys right inside `section` ("" for the case itself) are all that the
- * table on top may hold. */
+/* Check that the keys right inside `section` ("" for the case itself) are all
+ * that the table on top may hold. */
 static void check_section(struct case_file *file, const char *section) {
   const char *names[CASE_MAX_NAMES];
   const struct key *key;
@@ -65,7 +65,7 @@ static void read_section(struct case_file *file, const struct key *key) {
   lua_pop(L, 1);
 }
 
-/* The value of `key` is on top. */
+/* Read the value of `key`, which is on top. */
 static void read_key(struct case_file *file, const struct key *key,
                      void *base) {
   switch (key->type) {
@@ -120,7 +120,8 @@ static void read_model(struct case_file *file) {
   if (size > 0) file->params.own = mem_alloc(1, size);
 }
 
-/* A key inside an optional section that is not there is not missing. */
+/* Is a key inside an optional section that is not there? Then it is not
+ * missing. */
 static bool is_absent(struct case_file *file, const struct key *key) {
   char section[PATH_LENGTH];
   const char *dot = strrchr(key->path, '.');
@@ -155,7 +156,7 @@ static void check_phases(struct case_file *file) {
                "gas its density and rheology");
 }
 
-/* Cells must be told apart by their coordinates. */
+/* Check that cells can be told apart by their coordinates. */
 static void check_origin(struct case_file *file) {
   const struct params *params = &file->params;
   const double finest = ldexp(params->size, -params->level_max);
@@ -171,7 +172,8 @@ static void check_origin(struct case_file *file) {
   }
 }
 
-/* Friction between grains leaves pores; a liquid keeps its bubbles. */
+/* Choose whether gas passes: friction between grains leaves pores, a liquid
+ * keeps its bubbles. */
 static void choose_permeable(struct params *params) {
   if (params->grains.rheology.model == NULL) return;
   const enum permeability choice = params->permeability;

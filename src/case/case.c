@@ -36,7 +36,7 @@ char *case_read_text(const char *path) {
   return NULL;
 }
 
-/* "runs/column.lua" gives "column". */
+/* Make "column" of "runs/column.lua". */
 static void name_of(const char *path, size_t size, char *name) {
   const char *slash = strrchr(path, '/');
   const char *base = slash != NULL ? slash + 1 : path;

@@ -91,16 +91,18 @@ struct case_file {
 
 /* Make param() known to the sandbox. Errors are Lua errors. */
 void param_install(struct case_file *file);
-/* Every override must have been declared. */
+/* Check that every override has been declared. */
 void param_check_overrides(struct case_file *file);
 
-/* rows.c */
+/* Serve everybody (rows.c): copy a text. */
 char *text_copy(const char *text);
-/* Letters, digits and _, not a digit first, not too long. */
+/* Is a text a name: letters, digits and _, not a digit first, not too long? */
 bool is_name(const char *text);
-/* "section.name" in `path`, cut if too long; `name` alone if section is "". */
+/* Write "section.name" into `path`, cut if too long; `name` alone if section is
+ * "". */
 void path_join(char path[PATH_LENGTH], const char *section, const char *name);
-/* `value` as the case would write it, shortest that reads back the same. */
+/* Write `value` as the case would, the shortest text that reads back the same.
+ */
 void text_number(double value, size_t size, char *text);
 /* Append a row; texts are copied. Names are unique: a parameter named like a
  * key of the case gives way and becomes "param.name". */
@@ -119,27 +121,28 @@ _Noreturn void read_fail(struct case_file *file, const char *path,
 _Noreturn void read_fail_at(struct case_file *file, const char *path,
                             const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* The table on top may have these keys and `npositions` elements. It stays. */
+/* Check that the table on top, which stays, has only these keys and
+ * `npositions` elements. */
 void read_known_only(struct case_file *file, const char *path, int n,
                      const char *const *names, int npositions);
-/* The names of the table on top in alphabetical order, as Lua's own differs
- * between ranks; they live as long as the table. Returns how many. */
+/* List the names of the table on top in alphabetical order, as Lua's own order
+ * differs between ranks; they live as long as the table. Returns how many. */
 int read_names(struct case_file *file, const char *path, int max,
                const char **names);
 /* Store a value as the key says, or its default, in `base` + offset, and add a
  * row. Only plain types, up to KEY_TEXT. Returns whether it was given. */
 bool read_value(struct case_file *file, const struct key *key, const char *path,
                 void *base);
-/* A finite number within the key's range. */
+/* Read a finite number within the range of the key. */
 double read_number(struct case_file *file, const struct key *key,
                    const char *path);
-/* "; did you mean `x`?" if a word looks like it, then all words. */
+/* Write "; did you mean `x`?" if a word looks like it, then all words. */
 void read_suggest(const char *word, int n, const char *const *names,
                   size_t size, char *text);
 
 /* checksum.c */
 
-/* The checksum goes on with n bytes. */
+/* Continue a checksum with n bytes. */
 uint64_t checksum_add(uint64_t checksum, const void *data, size_t n);
 
 /* function.c */
@@ -152,13 +155,14 @@ bool case_finds_gas(const struct case_file *file);
 struct case_function *function_keep(struct case_file *file, const char *path,
                                     const char *unit, const char *help,
                                     int nresults);
-/* One of its results as the struct that `params` holds. */
+/* Return one of the results as the struct that `params` holds. */
 struct function function_result(struct case_file *file,
                                 struct case_function *function, int result);
-/* The function kept as a viscosity: the context of rheology->user. */
+/* Make a function that was kept the viscosity of a closure: the context of
+ * rheology->user. */
 void function_set_viscosity(struct case_function *function,
                             struct rheology *rheology);
-/* The name it returns at x, valid until the next call. */
+/* Return the name that a function returns at x, valid until the next call. */
 const char *function_name(struct case_function *function, const double x[3]);
 /* Ends the program; only this rank may know. */
 _Noreturn void function_fail(struct case_function *function, const double x[3],
@@ -168,16 +172,16 @@ _Noreturn void function_fail(struct case_function *function, const double x[3],
  * wrong does so before anything is written. */
 void function_try_all(struct case_file *file);
 
-/* build.c: everything the returned table says. */
+/* Read the whole table that the case returns (build.c). */
 void build_params(struct case_file *file);
 
 /* The types of key that have an inner life. */
 
-/* closure.c */
+/* Read a closure (closure.c). */
 void closure_read(struct case_file *file, const struct key *key);
 bool closure_depends_on_pressure(const struct rheology *rheology);
 
-/* boundary.c */
+/* Read a side and what follows from it (boundary.c). */
 void boundary_read_side(struct case_file *file, const struct key *key);
 void boundary_read_patches(struct case_file *file);
 void boundary_check(struct case_file *file);
@@ -188,23 +192,23 @@ void boundary_check(struct case_file *file);
  * cover. A patch that is narrower than a face is an error. */
 void patches_map(struct case_file *file);
 void patches_destroy(struct case_file *file);
-/* Path of a boundary that is an outflow on some part of some side; false if
- * there is none. */
+/* Find the path of a boundary that is an outflow on some part of some side;
+ * returns false if there is none. */
 bool patches_find_outflow(const struct case_file *file, char path[PATH_LENGTH]);
 
-/* pressure.c: boundary.pressure_level, and whether it is needed. */
+/* Read boundary.pressure_level, and check whether it is needed (pressure.c). */
 void pressure_read(struct case_file *file, const struct key *key);
 void pressure_check(struct case_file *file);
 
-/* criteria.c */
+/* Read the criteria of adaptation (criteria.c). */
 void criteria_read(struct case_file *file, const struct key *key);
 
-/* initial.c */
+/* Read the initial state (initial.c). */
 void initial_read_shape(struct case_file *file, const struct key *key);
 void initial_read_velocity(struct case_file *file, const struct key *key);
 void initial_read_tracers(struct case_file *file, const struct key *key);
 
-/* output_keys.c */
+/* Read lists of times, and what tests expect (output_keys.c). */
 void output_read_times(struct case_file *file, const struct key *key);
 void output_read_expect(struct case_file *file, const struct key *key);
 

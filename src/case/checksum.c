@@ -4,7 +4,7 @@
 
 #include "case_file.h"
 
-/* FNV-1a, 64 bits [Fowler, Noll & Vo]. */
+/* Compute FNV-1a, 64 bits [Fowler, Noll & Vo]. */
 uint64_t checksum_add(uint64_t checksum, const void *data, size_t n) {
   const unsigned char *byte = (const unsigned char *)data;
   for (size_t i = 0; i < n; i++)

@@ -34,8 +34,8 @@ static const struct rheology_model *read_model(struct case_file *file,
   return model;
 }
 
-/* The keys of a model, `regularisation` and, if it is the user's, `viscosity`
- * are all its table may hold. */
+/* Check that the table of a closure holds only the keys of its model,
+ * `regularisation` and, if it is the user's, `viscosity`. */
 static void check_names(struct case_file *file, const struct key *key,
                         const struct rheology_model *model) {
   const char *names[CASE_MAX_NAMES];
@@ -84,7 +84,7 @@ static void read_regularisation(struct case_file *file, const char *closure,
            given ? "case" : "default");
 }
 
-/* The function of the closure `user`. */
+/* Read the function of the closure `user`. */
 static void read_viscosity(struct case_file *file, const char *closure,
                            struct rheology *rheology) {
   lua_State *L = file->L;

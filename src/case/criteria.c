@@ -4,7 +4,8 @@
 
 #include "case_file.h"
 
-/* The name of the criterion on top, a string or a table's first element. */
+/* Return the name of the criterion on top, a string or a table's first element.
+ */
 static const struct criterion_kind *read_kind(struct case_file *file,
                                               const char *path) {
   lua_State *L = file->L;

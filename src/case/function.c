@@ -54,14 +54,14 @@ void function_fail(struct case_function *function, const double x[3],
   read_fail_at(file, function->path, "%s %s", call, message);
 }
 
-/* While all ranks do the same, what is returned counts in the checksum. */
+/* Count a result in the checksum while all ranks do the same. */
 static void add_result(struct case_function *function, const void *result,
                        size_t n) {
   if (function->file->loading)
     function->checksum = checksum_add(function->checksum, result, n);
 }
 
-/* Leaves nresults values on the stack. */
+/* Call a function, which leaves nresults values on the stack. */
 static void call(struct case_function *function, const double x[3]) {
   struct case_file *file = function->file;
   lua_State *L = file->L;
@@ -114,7 +114,8 @@ struct function function_result(struct case_file *file,
   return (struct function){.eval = eval, .context = one};
 }
 
-/* Infinity is allowed, as at rest: eta_max cuts it. */
+/* Return the viscosity of a function of the user; infinity is allowed, as at
+ * rest: eta_max cuts it. */
 static double viscosity(struct case_function *function, const double at[3]) {
   lua_State *L = function->file->L;
   call(function, at);
@@ -167,7 +168,8 @@ const char *function_name(struct case_function *function, const double x[3]) {
 
 enum { TRIES = 9 }; /* along each axis */
 
-/* Point i of a lattice over the box, n along each axis, corners included. */
+/* Try point i of a lattice over the box, n along each axis, corners included.
+ */
 static void try_point(const struct params *params, int i, int n, double x[3]) {
   for (int d = 0; d < 3; d++, i /= n)
     x[d] = d < params->dimension

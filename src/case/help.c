@@ -46,7 +46,7 @@ static void print_wrapped(FILE *f, int indent, const char *text) {
   wrap_print(f, indent, text);
 }
 
-/* "a number > 0, m, needed" */
+/* Write what a key asks for: "a number > 0, m, needed". */
 static void conditions(const struct key *key, size_t size, char *text) {
   char allowed[VALUE_LENGTH], end[VALUE_LENGTH] = "optional";
   keys_allowed(key, 0, sizeof allowed, allowed);

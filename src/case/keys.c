@@ -231,7 +231,7 @@ const char *keys_side_name(int dimension, int side) {
   return side >= 0 && side < 6 ? NAMES[dimension == 3][side] : NULL;
 }
 
-/* " > 0", " from 1 to 24" */
+/* Write a range: " > 0", " from 1 to 24". */
 static void range_text(const struct key *key, size_t size, char *text) {
   const char *above = key->above ? ">" : ">=";
   if (isfinite(key->high) && isfinite(key->low) && !key->above)

@@ -10,8 +10,8 @@
 #include "talus/key.h"
 #include "talus/params.h"
 
-/* Key i of a case of this model, NULL past the last. Sections come before what
- * is in them, and what others depend on comes first. */
+/* Return key i of a case of this model, NULL past the last. Sections come
+ * before what is in them, and what others depend on comes first. */
 const struct key *keys_get(const struct model_keys *model, int i);
 /* Find the key of this path; NULL: the model has none. */
 const struct key *keys_find(const struct model_keys *model, const char *path);
@@ -37,10 +37,10 @@ struct criterion_kind {
 const struct criterion_kind *keys_criterion_kind(int i);
 const struct key *keys_criterion_option(int i); /* offsets in criterion */
 
-/* Boundaries by side 2d, 2d+1 in this dimension; NULL beyond. */
+/* Return the name of side 2d or 2d+1 in this dimension; NULL beyond. */
 const char *keys_side_name(int dimension, int side);
 
-/* What a key accepts, in words: "an integer from 1 to 24". */
+/* Say in words what a key accepts: "an integer from 1 to 24". */
 void keys_allowed(const struct key *key, int dimension, size_t size,
                   char *text);
 

@@ -55,7 +55,7 @@ static const char PAIRS[] =
 
 /* Texts without addresses */
 
-/* A table, a function or the like at i gives way to the name of its type. */
+/* Replace a table, a function or the like at i by the name of its type. */
 static void hide_address(lua_State *L, int i) {
   const int type = lua_type(L, i);
   if (type == LUA_TNONE || type == LUA_TNIL || type == LUA_TBOOLEAN ||
@@ -84,8 +84,8 @@ static int print(lua_State *L) {
   return 0;
 }
 
-/* Before string.format begins: %p becomes %s, and what either shows of a table
- * or a function is the name of its type. */
+/* Prepare string.format: %p becomes %s, and either shows a table or a function
+ * as the name of its type. */
 static double prepare_format(lua_State *L) {
   const int top = lua_gettop(L);
   size_t n;
@@ -117,8 +117,8 @@ static double length(lua_State *L, int i) {
              : 0;
 }
 
-/* How many elements from argument `from` to argument `to`, which are all of
- * table 1 if they are not given. */
+/* Return how many elements from argument `from` to argument `to`, which are all
+ * of table 1 if they are not given. */
 static double span(lua_State *L, int from, int to) {
   const double first = lua_isnoneornil(L, from) ? 1 : lua_tonumber(L, from);
   const double last =
@@ -131,7 +131,7 @@ static double nothing(lua_State *L) {
   return 0;
 }
 
-/* Without letters it would do nothing, n times. */
+/* Prepare string.rep: without letters it would do nothing, n times. */
 static double prepare_rep(lua_State *L) {
   if (length(L, 1) + length(L, 3) == 0 && lua_type(L, 1) == LUA_TSTRING) {
     lua_settop(L, 1);
@@ -142,13 +142,14 @@ static double prepare_rep(lua_State *L) {
 
 static double read_text(lua_State *L) { return length(L, 1) / BYTES; }
 
-/* It ends at the first element that is not there; a number becomes text. */
+/* Prepare table.concat, which ends at the first element that is not there; a
+ * number becomes text. */
 static double concat(lua_State *L) {
   return 10 * fmin(span(L, 3, 4), length(L, 1) + 1);
 }
 
-/* Elements behind the place that argument 2 names, where there is a third, or
- * without it at the end. */
+/* Count the elements behind the place that argument 2 names, where there is a
+ * third, or without it at the end. */
 static double insert(lua_State *L) {
   return lua_gettop(L) < 3 ? 1 : fmax(length(L, 1) - lua_tonumber(L, 2), 0);
 }
@@ -159,7 +160,8 @@ static double take_out(lua_State *L) {
 
 static double move(lua_State *L) { return span(L, 2, 3); }
 
-/* More than a million do not fit on the stack, which is said at once. */
+/* Prepare table.unpack: more than a million do not fit on the stack, which is
+ * said at once. */
 static double unpack(lua_State *L) { return fmin(span(L, 2, 3), 1e6); }
 
 static const struct guarded {
@@ -178,8 +180,8 @@ static const struct guarded {
     {LUA_GNAME, "tonumber", read_text},
 };
 
-/* Stands for the C function that is its first upvalue, in whose frame it does
- * the work, so that messages name it. */
+/* Stand for the C function that is the first upvalue, and do its work in the
+ * frame of the guard, so that messages name it. */
 static int guard(lua_State *L) {
   const struct guarded *guarded =
       (const struct guarded *)lua_touserdata(L, lua_upvalueindex(2));
@@ -257,7 +259,8 @@ static int sort(lua_State *L) {
 
 /* The globals */
 
-/* __index of the globals: a name that means nothing is an error, not nil. */
+/* Serve as __index of the globals: a name that means nothing is an error, not
+ * nil. */
 static int complain_of_name(lua_State *L) {
   const char *name = lua_tostring(L, 2);
   if (name == NULL) name = "?";
@@ -283,7 +286,8 @@ static void open_libraries(lua_State *L) {
   }
 }
 
-/* Functions of ours in the place of theirs; string.dump gives code. */
+/* Put functions of ours in the place of theirs, and take out string.dump, which
+ * gives code. */
 static void replace_functions(lua_State *L) {
   static const luaL_Reg TEXTS[] = {{"find", pattern_find},
                                    {"match", pattern_match},

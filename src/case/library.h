@@ -19,7 +19,7 @@
  * are Lua errors. */
 void library_open(lua_State *L);
 
-/* pattern.c: string.find, match, gmatch, gsub */
+/* Serve as string.find, match, gmatch and gsub (pattern.c). */
 int pattern_find(lua_State *L);
 int pattern_match(lua_State *L);
 int pattern_gmatch(lua_State *L);

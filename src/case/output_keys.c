@@ -10,8 +10,9 @@ static int compare_times(const void *a, const void *b) {
   return (s > t) - (s < t);
 }
 
-/* Sorted; what lies beyond the end is dropped with a word, as a case is often
- * run for a shorter time than its list was made for. */
+/* Read a list of times and sort it. Those beyond the end are dropped with a
+ * word, as a case is often run for a shorter time than its list was made for.
+ */
 void output_read_times(struct case_file *file, const struct key *key) {
   lua_State *L = file->L;
   struct params *params = &file->params;

@@ -9,7 +9,7 @@
 #include "talus/error.h"
 #include "talus/spelling.h"
 
-/* The text behind `name=` on the command line. */
+/* Return the text behind `name=` on the command line. */
 static const char *override_of(const struct case_file *file, const char *name) {
   size_t n = strlen(name);
   for (int i = 0; i < file->noverrides; i++) {
@@ -19,14 +19,15 @@ static const char *override_of(const struct case_file *file, const char *name) {
   return NULL;
 }
 
-/* What the command line should have said, given the default at index 2. */
+/* Say what the command line should have said, given the default at index 2. */
 static int complain_of_override(lua_State *L, const char *name,
                                 const char *text, const char *wanted) {
   return luaL_error(L, "%s=%s on the command line: %s is needed", name, text,
                     wanted);
 }
 
-/* Lua takes hexadecimal integers modulo 2^64, which strtod does not. */
+/* Push a number. Lua takes hexadecimal integers modulo 2^64, which strtod does
+ * not. */
 static bool push_number(lua_State *L, const char *text) {
   if (lua_stringtonumber(L, text) == 0) return false;
   const double value = lua_tonumber(L, -1);
@@ -35,7 +36,7 @@ static bool push_number(lua_State *L, const char *text) {
   return false;
 }
 
-/* A list of what the default holds: texts if its first element is one. */
+/* Push a list of what the default holds: texts if its first element is one. */
 static bool push_list(lua_State *L, const char *text) {
   bool texts = lua_rawgeti(L, 2, 1) == LUA_TSTRING;
   lua_pop(L, 1);
@@ -76,7 +77,7 @@ static int push_override(lua_State *L, const char *name, const char *text) {
   }
 }
 
-/* The value on top as the command line would say it, in its place. */
+/* Replace the value on top by a text as the command line would say it. */
 static void value_to_text(lua_State *L) {
   if (!lua_istable(L, -1)) {
     char number[32];

@@ -7,7 +7,7 @@
 #include "case_file.h"
 #include "talus/side_map.h"
 
-/* Boundary at the point t of a side. */
+/* Return the boundary at the point t of a side. */
 static int select_at(void *context, const double t[2]) {
   const struct case_side *of = (const struct case_side *)context;
   const struct params *params = &of->file->params;
@@ -48,7 +48,8 @@ static uint32_t list_inflows(const struct params *params) {
   return found;
 }
 
-/* Boundary b is returned on a side, but takes none of its faces. */
+/* Complain that boundary b is returned on a side, but takes none of its faces.
+ */
 static _Noreturn void fail_narrow(struct case_file *file, int side, int b) {
   const struct params *params = &file->params;
   const double covered = side_map_covered(file->side[side].map)[b];

@@ -40,7 +40,7 @@ static const char *match(struct match *m, const char *s, const char *p);
 
 /* Single characters */
 
-/* Behind the class that begins at p. */
+/* Return the place behind the class that begins at p. */
 static const char *class_end(struct match *m, const char *p) {
   if (*p == ESCAPE) {
     if (p + 1 == m->pattern_end)
@@ -99,7 +99,7 @@ static bool is_in_class(int c, int class) {
   return in != (isupper(class) != 0);
 }
 
-/* p at the [ of the set, last at its ]. */
+/* Is a letter in a set? p is at its [, last at its ]. */
 static bool is_in_set(int c, const char *p, const char *last) {
   const bool in = p[1] != '^';
   if (!in) p++;
@@ -175,7 +175,7 @@ static const char *end_capture(struct match *m, const char *s, const char *p) {
   return end;
 }
 
-/* %b() at p; returns where the balanced text ends. */
+/* Match %b() at p; returns where the balanced text ends. */
 static const char *match_balance(struct match *m, const char *s,
                                  const char *p) {
   if (p + 3 >= m->pattern_end)
@@ -192,7 +192,7 @@ static const char *match_balance(struct match *m, const char *s,
   return NULL;
 }
 
-/* %1 at p; returns where what the capture holds ends. */
+/* Match %1 at p; returns where the repeated capture ends. */
 static const char *match_again(struct match *m, const char *s, const char *p) {
   const int k = p[1] - '1';
   if (k < 0 || k >= m->ncaptures || m->capture[k].length == UNFINISHED)
@@ -203,7 +203,7 @@ static const char *match_again(struct match *m, const char *s, const char *p) {
   return memcmp(m->capture[k].begin, s, (size_t)n) == 0 ? s + n : NULL;
 }
 
-/* %f[set] at p; returns where the pattern goes on. */
+/* Match %f[set] at p; returns where the pattern goes on. */
 static const char *match_frontier(struct match *m, const char *s,
                                   const char *p) {
   if (p[2] != '[') luaL_error(m->L, "missing '[' after '%%f' in pattern");
@@ -217,8 +217,8 @@ static const char *match_frontier(struct match *m, const char *s,
              : NULL;
 }
 
-/* The class at *p and the sign behind it. Returns true, and *s and *p where to
- * go on, or false and the end, or NULL, in *s. */
+/* Match the class at *p and the sign behind it. Returns true, and in *s and *p
+ * where to go on, or false, and in *s the end or NULL. */
 static bool match_class(struct match *m, const char **s, const char **p) {
   const char *class = *p, *p_end = class_end(m, class);
   const char sign = p_end < m->pattern_end ? *p_end : '\0';
@@ -243,7 +243,7 @@ static bool match_class(struct match *m, const char **s, const char **p) {
   return true;
 }
 
-/* One item of the pattern; returns as match_class. */
+/* Match one item of the pattern; returns as match_class. */
 static bool match_item(struct match *m, const char **s, const char **p) {
   const char *at = *p;
   if (*at == '(' || *at == ')') {
@@ -270,7 +270,7 @@ static bool match_item(struct match *m, const char **s, const char **p) {
   return *s != NULL;
 }
 
-/* Where the match of pattern p at s ends; NULL: there is none. */
+/* Return where the match of pattern p at s ends; NULL: there is none. */
 static const char *match(struct match *m, const char *s, const char *p) {
   if (m->depth++ == DEEPEST) luaL_error(m->L, "pattern too complex");
   count(m, 1);
@@ -281,7 +281,7 @@ static const char *match(struct match *m, const char *s, const char *p) {
 
 /* From Lua and back */
 
-/* Text and pattern from arguments 1 and 2; returns the pattern. */
+/* Take text and pattern from arguments 1 and 2; returns the pattern. */
 static const char *begin_match(lua_State *L, struct match *m) {
   size_t ntext, npattern;
   const char *text = luaL_checklstring(L, 1, &ntext);
@@ -298,8 +298,8 @@ static const char *match_at(struct match *m, const char *s, const char *p) {
   return match(m, s, p);
 }
 
-/* Argument i as a place in the text, which may be counted from its end; beyond
- * the end NULL. */
+/* Return argument i as a place in the text, which may be counted from its end;
+ * NULL beyond the end. */
 static const char *place_of(const struct match *m, int i) {
   const lua_Integer n = (lua_Integer)(m->end - m->begin);
   lua_Integer at = luaL_optinteger(m->L, i, 1);
@@ -308,7 +308,8 @@ static const char *place_of(const struct match *m, int i) {
   return at > n + 1 ? NULL : m->begin + (at - 1);
 }
 
-/* Capture k of the match from s to end, which is its own when there are none.
+/* Push capture k of the match from s to end, which is its own when there are
+ * none.
  */
 static void push_capture(struct match *m, int k, const char *s,
                          const char *end) {
@@ -333,7 +334,8 @@ static int push_captures(struct match *m, const char *s, const char *end) {
   return n;
 }
 
-/* The first place at or after s that holds the pattern letter by letter. */
+/* Return the first place at or after s that holds the pattern letter by letter.
+ */
 static const char *find_plain(struct match *m, const char *s, const char *p) {
   const size_t n = (size_t)(m->pattern_end - p);
   while (s != NULL && (size_t)(m->end - s) >= n) {
@@ -381,8 +383,8 @@ int pattern_find(lua_State *L) { return find_or_match(L, true); }
 
 int pattern_match(lua_State *L) { return find_or_match(L, false); }
 
-/* The next match of a gmatch, whose upvalues are text, pattern, where to go on
- * and where the last match ended, counted from the begin of the text. */
+/* Find the next match of a gmatch, whose upvalues are text, pattern, where to
+ * go on and where the last match ended, counted from the begin of the text. */
 static int find_next(lua_State *L) {
   struct match m;
   lua_settop(L, 0);
@@ -413,7 +415,7 @@ int pattern_gmatch(lua_State *L) {
   return 1;
 }
 
-/* The text that takes the place of a match, %1 and the like filled in. */
+/* Add the text that takes the place of a match, %1 and the like filled in. */
 static void add_text(struct match *m, luaL_Buffer *b, const char *s,
                      const char *end) {
   size_t n;

@@ -12,7 +12,7 @@ static bool has_gas(const struct params *params) {
   return params->gas.rheology.model != NULL || params->shape.eval != NULL;
 }
 
-/* The point on top, which is taken off, lies in the box. */
+/* Read the point on top, which is taken off and must lie in the box. */
 static void read_point(struct case_file *file, const char *path) {
   struct params *params = &file->params;
   const struct key point = {
@@ -110,7 +110,8 @@ void pressure_read(struct case_file *file, const struct key *key) {
   if (has_gas(&file->params)) file->params.pressure_at = PRESSURE_AT_GAS;
 }
 
-/* The closures need the pressure itself, not only its gradient. */
+/* Check that the pressure has a level: closures need p itself, not only its
+ * gradient. */
 void pressure_check(struct case_file *file) {
   const struct params *params = &file->params;
   char path[PATH_LENGTH];

@@ -14,7 +14,7 @@
 
 enum { PLACE_LENGTH = 4096 + 32 }; /* path and line */
 
-/* "file:line" of a key, or "file" if the line is not known. */
+/* Write "file:line" of a key, or "file" if the line is not known. */
 static void place_text(const struct case_file *file, const char *path,
                        size_t size, char *text) {
   int line = source_line(file->text, path);
@@ -24,7 +24,7 @@ static void place_text(const struct case_file *file, const char *path,
     snprintf(text, size, "%s", file->path);
 }
 
-/* The value on top as the user knows it. */
+/* Describe the value on top as the user knows it. */
 static void describe(lua_State *L, size_t size, char *text) {
   int type = lua_type(L, -1);
   if (type == LUA_TNUMBER)
@@ -168,8 +168,8 @@ static _Noreturn void fail_missing(struct case_file *file,
   read_fail_at(file, path, "%s is missing: %s (%s)", path, allowed, key->help);
 }
 
-/* The number on top, which stays; fails with the whole value, found below it
- * when it is an element of a list. */
+/* Return the number on top, which stays; a message shows the whole value, which
+ * is below the number if that is an element of a list. */
 static double number_within(struct case_file *file, const struct key *key,
                             const char *path) {
   lua_State *L = file->L;
@@ -204,7 +204,7 @@ static int64_t integer_within(struct case_file *file, const struct key *key,
   return (int64_t)value;
 }
 
-/* Element `d` of the list on top, on top of it. */
+/* Push element `d` of the list on top. */
 static void push_element(struct case_file *file, const struct key *key,
                          const char *path, int d) {
   lua_State *L = file->L;
@@ -267,7 +267,7 @@ static bool push_default(struct case_file *file, const struct key *key) {
   return true;
 }
 
-/* The name on top as a value of the enum. */
+/* Return the name on top as a value of the enum. */
 static int choice_within(struct case_file *file, const struct key *key,
                          const char *path) {
   if (lua_type(file->L, -1) != LUA_TSTRING) fail_value(file, key, path);

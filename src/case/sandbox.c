@@ -52,7 +52,7 @@ static double seconds(clockid_t clock) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* "case.lua:3: ", the line that runs or has called what runs. */
+/* Push "case.lua:3: ", the line that runs or has called what runs. */
 static void push_place(lua_State *L) {
   lua_Debug activation;
   for (int level = 0; lua_getstack(L, level, &activation); level++) {
@@ -64,7 +64,7 @@ static void push_place(lua_State *L) {
   lua_pushfstring(L, "%s: ", sandbox_of(L)->path);
 }
 
-/* " in 'find'", if a C function runs that has a name. */
+/* Push " in 'find'" if a C function runs that has a name. */
 static void push_function(lua_State *L) {
   lua_Debug activation;
   lua_getstack(L, 0, &activation);
@@ -86,8 +86,8 @@ static void give_up_after(lua_State *L, int most, const char *unit) {
   lua_error(L);
 }
 
-/* The clock is asked for the time of the processor once it is late: that takes
- * longer, but does not count what others do. */
+/* Check the time: ask for that of the processor once the clock is late, which
+ * takes longer but does not count what others do. */
 static void check_time(lua_State *L) {
   struct sandbox *sandbox = sandbox_of(L);
   const double now = seconds(CLOCK_MONOTONIC);

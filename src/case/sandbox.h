@@ -29,7 +29,7 @@ struct sandbox *sandbox_new(const char *path, void (*open)(lua_State *));
 void sandbox_destroy(struct sandbox *sandbox);
 lua_State *sandbox_state(const struct sandbox *sandbox);
 
-/* Whether print() is heard, on stderr. Off at the start. */
+/* Let print() be heard on stderr, or not; off at the start. */
 void sandbox_set_loud(struct sandbox *sandbox, int loud);
 
 bool sandbox_is_loud(lua_State *L);

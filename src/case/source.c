@@ -144,7 +144,8 @@ static int find_return(struct scanner *s, bool *table) {
   return line;
 }
 
-/* Next component of a path into `name`; indices as in adapt[2] are left out. */
+/* Take the next component of a path into `name`; indices as in adapt[2] are
+ * left out. */
 static const char *split(const char *path, char *name) {
   size_t n = strcspn(path, ".["), rest = strcspn(path, ".");
   snprintf(name, WORD_LENGTH, "%.*s", (int)n, path);

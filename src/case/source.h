@@ -9,9 +9,9 @@
 #ifndef TALUS_CASE_SOURCE_H
 #define TALUS_CASE_SOURCE_H
 
-/* Line of the key `path`, such as "domain.size" or "adapt[2].width"; if it is
- * not there, of the nearest key above it, or of the last `return`; 0 if there
- * is none. */
+/* Return the line of the key `path`, such as "domain.size" or "adapt[2].width";
+ * if it is not there, of the nearest key above it, or of the last `return`; 0
+ * if there is none. */
 int source_line(const char *text, const char *path);
 
 #endif

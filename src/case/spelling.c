@@ -19,8 +19,8 @@ static bool differ(char a, char b) {
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* Damerau's distance, optimal alignment: row[0] is the line before the last,
- * row[1] the last, row[2] the one being made. */
+/* Compute Damerau's distance, optimal alignment: row[0] is the line before the
+ * last, row[1] the last, row[2] the one being made. */
 static int distance(const char *a, const char *b) {
   int row[3][LONGEST + 1] = {{0}};
   int na = length(a), nb = length(b);

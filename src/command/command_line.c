@@ -19,7 +19,7 @@ static const struct option {
 
 enum { NOPTIONS = sizeof OPTIONS / sizeof *OPTIONS };
 
-/* The option that a word is, with or without "=value"; -1 if none. */
+/* Return the option that a word is, with or without "=value"; -1 if none. */
 static int find_option(const char *word) {
   for (int i = 0; i < NOPTIONS; i++) {
     size_t n = strlen(OPTIONS[i].name);

@@ -78,7 +78,7 @@ static void refuse_key(const struct rheology *rheology, const char *word,
              rheology->model->name, known);
 }
 
-/* One `key=value`. */
+/* Set one `key=value`. */
 static void set_key(struct rheology *rheology, const char *word,
                     double *pressure) {
   char name[64];
@@ -102,7 +102,7 @@ static void set_key(struct rheology *rheology, const char *word,
   }
 }
 
-/* The key `name`, else `other`, 1 if the closure has neither. */
+/* Return the key `name`, else `other`, 1 if the closure has neither. */
 static double value_or_one(const struct rheology *rheology, const char *name,
                            const char *other) {
   const struct rheology_key *key;
@@ -118,7 +118,8 @@ struct curve {
   double *I, *rate, *p, *eta, *nu, *state; /* owned; nu, state may be NULL */
 };
 
-/* Inertial numbers: even in the logarithm, and both limits where known. */
+/* Make the rows of a curve: inertial numbers even in the logarithm, and both
+ * limits where known. */
 static struct curve curve_new(const struct rheology *rheology) {
   struct curve curve = {0};
   double limit[2] = {INFINITY, pow(10, LAST_DECADE)};
@@ -193,7 +194,8 @@ static void print_columns(const struct curve *curve) {
   }
 }
 
-/* What the curve as a whole has to say. `scale` is the shear rate of I = 1. */
+/* Print what holds for the curve as a whole. `scale` is the shear rate of I =
+ * 1. */
 static void print_summary(const struct rheology *rheology, double pressure,
                           double scale) {
   double I[2], rate, eta;
@@ -233,7 +235,7 @@ static void print_curve(const struct rheology *rheology, double pressure,
   curve_destroy(&curve);
 }
 
-/* A grain of unit size and density where the closure has no other. */
+/* Give grains unit size and density where the closure has no other. */
 static void set_units(struct rheology *rheology) {
   const struct rheology_key *key;
   for (int i = 0; (key = rheology_key(rheology->model, i)) != NULL; i++)

@@ -25,7 +25,7 @@ _Static_assert((int)FOREST_MAX_LEVEL ==
 _Static_assert((int)FOREST_MAX_TREES == (int)CASE_MAX_TREES,
                "and for as many trees");
 
-/* The text of the case, read by rank 0, on all ranks. */
+/* Read the text of the case on rank 0 and give it to all ranks. */
 static char *read_everywhere(const char *path) {
   char *text = base_rank() == 0 ? case_read_text(path) : NULL;
   int64_t head[2] = {text != NULL ? (int64_t)strlen(text) : -1, errno};
@@ -40,8 +40,8 @@ static char *read_everywhere(const char *path) {
   return text;
 }
 
-/* Whether `talus plot` will find the outlines to compare with: as they stand,
- * beside the run, or among the examples, where a case comes from. */
+/* Tell whether `talus plot` will find the outlines to compare with: as they
+ * stand, beside the run, or among the examples, where a case comes from. */
 static bool finds_reference(const struct command_line *line, const char *name) {
   enum { LENGTH = 4096 };
   const char *slash = strrchr(line->case_path, '/');
@@ -58,7 +58,7 @@ static bool finds_reference(const struct command_line *line, const char *name) {
   return false;
 }
 
-/* What is no error but worth a word. */
+/* Say what is no error but worth a word. */
 static void say_notes(const struct command_line *line,
                       const struct case_file *file) {
   if (line->quiet || base_rank() != 0) return;
@@ -161,7 +161,7 @@ static const struct command {
 
 enum { NCOMMANDS = sizeof COMMANDS / sizeof *COMMANDS };
 
-/* NULL if there is no such command. */
+/* Find a command; NULL: there is none of this name. */
 static const struct command *find_command(const char *word) {
   for (int i = 0; i < NCOMMANDS; i++)
     if (strcmp(word, COMMANDS[i].name) == 0) return &COMMANDS[i];

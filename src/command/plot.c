@@ -16,7 +16,7 @@ enum { LENGTH = 4096, MOST_WORDS = 64 };
 
 extern char **environ;
 
-/* Whether this interpreter is there and has what the plots need. */
+/* Tell whether this interpreter is there and has what the plots need. */
 static bool can_plot(const char *python) {
   char flag[] = "-c", code[] = "import h5py, matplotlib";
   char name[LENGTH];
@@ -52,8 +52,8 @@ static const char *find_python(void) {
       "interpreter has them");
 }
 
-/* plot.py in $TALUS_TOOLS, or in the tools/ of the tree we were built in, or
- * of the one we stand in. */
+/* Find plot.py in $TALUS_TOOLS, or in the tools/ of the tree we were built in,
+ * or of the one we stand in. */
 static void find_script(char *script) {
   static const char *const places[] = {"../tools", "../../tools"};
   char own[LENGTH / 2];

@@ -64,7 +64,8 @@ struct run {
   double memory; /* bytes on this rank before the simulation was made */
 };
 
-/* Time: nearly equal times are equal, so that no sliver of a step is left. */
+/* Are two times equal? Nearly is enough, so that no sliver of a step is left.
+ */
 static bool same_time(const struct run *run, double a, double b) {
   return fabs(a - b) <= 1e-12 * fmax(fabs(run->params->stop), fabs(b));
 }
@@ -74,7 +75,7 @@ static bool at_end(const struct run *run) {
   return run->at_rest || time >= stop || same_time(run, time, stop);
 }
 
-/* The next time a step must land on. */
+/* Return the next time a step must land on. */
 static double next_event(const struct run *run) {
   double time = run->model->time, next = run->params->stop;
   for (int k = 0; k < run->params->nprofile_times; k++) {
@@ -84,7 +85,8 @@ static double next_event(const struct run *run) {
   return next;
 }
 
-/* Largest next step: it ends on the event or leaves a whole step before it. */
+/* Return the largest next step: it ends on the event or leaves a whole step
+ * before it. */
 static double step_bound(const struct run *run, double event) {
   double left = event - run->model->time, dt = run->model->dt;
   return dt > 0 && left > dt * (1 + 1e-9) && left < 2 * dt ? 0.5 * left : left;
@@ -98,7 +100,8 @@ static bool outline_due(const struct run *run) {
   return false;
 }
 
-/* Snapshots do not bind the steps: the first step at or after the time. */
+/* Is a snapshot due? It is with the first step at or after its time; snapshots
+ * do not bind steps. */
 static bool snapshot_due(const struct run *run) {
   double every = run->params->snapshot_every, time = run->model->time;
   if (run->model->step == 0 || at_end(run)) return true;
@@ -117,7 +120,7 @@ static double wall_seconds(const struct run *run) {
   return run->before.wall_seconds + MPI_Wtime() - run->wall_begin;
 }
 
-/* Rows of both tables, where they are due. */
+/* Write rows of both tables where they are due. */
 static void write_tables(struct run *run) {
   struct model *model = run->model;
   int every = run->params->series_every;
@@ -155,7 +158,8 @@ static void write_snapshot(struct run *run) {
   make_outputs(model, false);
 }
 
-/* Everything after a step, and before the first one, but the checkpoint. */
+/* Write everything but the checkpoint, after a step and before the first one.
+ */
 static void write_output(struct run *run) {
   double now = MPI_Wtime();
   lock_verify();
@@ -181,8 +185,8 @@ static void write_checkpoint(struct run *run) {
 
 /* Begin and end */
 
-/* Most parameters can be changed, but the grains are those of the first part:
- * so say which were. */
+/* Say which parameters a restart changes: it may change most, but the grains
+ * are those of the first part. */
 static void compare_parameters(const struct run *run) {
   if (base_rank() != 0 || !run->options->restart) return;
   char *path = output_path(run->options->directory, "parameters.csv");
@@ -318,7 +322,8 @@ static void say_time(const struct run *run, const char *indent,
                100 * seconds / fmax(all, 1e-9));
 }
 
-/* Where the time went on rank 0, and the memory of all ranks. Collective. */
+/* Say where the time went on rank 0, and the memory of all ranks. Collective.
+ */
 static void say_timing(const struct run *run) {
   static const char *const title[] = {
       "start", "steps", "tables (series, profile)", "snapshots", "checkpoints"};
@@ -365,7 +370,8 @@ static void say_end(const struct run *run, const char *why) {
   if (run->options->timing) say_timing(run);
 }
 
-/* The solvers gave up; the state before the step is in the checkpoint. */
+/* Say that the solvers gave up; the state before the step is in the checkpoint.
+ */
 static void say_failure(const struct run *run) {
   if (base_rank() != 0) return;
   char line[1024];
@@ -409,8 +415,8 @@ static const char *reason_to_stop(const struct run *run,
   return NULL;
 }
 
-/* One step, its clock set to the event it was meant to reach. *taken is how it
- * began. */
+/* Take one step, its clock set to the event it was meant to reach. *taken is
+ * how it began. */
 static int advance(struct run *run, struct step_taken *taken) {
   struct model *model = run->model;
   double begin = MPI_Wtime(), event = next_event(run);
@@ -424,8 +430,8 @@ static int advance(struct run *run, struct step_taken *taken) {
   return status;
 }
 
-/* One step, and whether the run can go on after it: EXIT_DONE, or what it ends
- * with. What is wrong has been said. */
+/* Take one step; returns EXIT_DONE if the run can go on, or the status it ends
+ * with, the reason having been said. */
 static int try_step(struct run *run) {
   struct step_taken taken;
   const int status = advance(run, &taken);

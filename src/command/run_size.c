@@ -17,7 +17,7 @@ void run_size_estimate(const struct params *params, struct run_size *size) {
   size->room = run_size_room();
 }
 
-/* "1.2 GB" */
+/* Write bytes as "1.2 GB". */
 static void text_bytes(double bytes, char text[32]) {
   static const char *const unit[] = {"B", "kB", "MB", "GB", "TB", "PB"};
   int k = 0;

@@ -26,7 +26,7 @@ static const struct scalar SCALARS[] = {
 
 enum { NLISTS = 3 };
 
-/* All that is remembered between steps besides the fields. */
+/* List all that is remembered between steps besides the fields. */
 static void list_scalars(struct model *model, struct run_state *state,
                          struct scalars list[NLISTS]) {
   const struct model_kind *kind = model->kind;
@@ -45,7 +45,8 @@ void run_state_write(const char *path, struct model *model,
                    &model->grid->fields, NLISTS, list, parameters);
 }
 
-/* Each step, and the start, writes one snapshot at most. */
+/* Check the number of snapshots: each step, and the start, writes one at most.
+ */
 static void check_snapshots(const char *path, int64_t snapshots, int64_t step) {
   if (snapshots <= step + 1) return;
   USER_ERROR("'%s' is damaged or was edited: snapshots = %" PRId64

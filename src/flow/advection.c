@@ -10,7 +10,8 @@
  * (docs/notes/limiter.md). */
 #define LIMITER_FACTOR 1.3
 
-/* Slope of a leaf from the differences to its lower and upper neighbour. */
+/* Return the slope of a leaf from the differences to its lower and upper
+ * neighbour. */
 static inline double limited(enum limiter limiter, double a, double b) {
   const double mean = 0.5 * (a + b);
   if (limiter == LIMITER_NONE) return mean;
@@ -20,8 +21,8 @@ static inline double limited(enum limiter limiter, double a, double b) {
   return copysign(min2(most, fabs(mean)), mean);
 }
 
-/* Slopes along d of the components u_e of a leaf, first <= e < end, and their
- * upwind changes per time along the other axes with its velocities w. */
+/* Set slopes along d of the components u_e of a leaf, first <= e < end, and the
+ * upwind changes per time of u_e along the other axes with velocities w. */
 static inline void leaf_terms(const struct mesh *mesh, enum limiter limiter,
                               int d, int32_t i, const double w[DIM], int first,
                               int end, double *const u[DIM],
@@ -62,7 +63,7 @@ static inline struct upwind upwind_of(const struct mesh *mesh, int32_t f,
   return up;
 }
 
-/* The formula of the header at one face. */
+/* Evaluate the formula of the header at one face. */
 static inline double face_value(const struct upwind *up, double dt,
                                 const double *u_e, const double *g_e,
                                 const double *slope, const double *transverse) {

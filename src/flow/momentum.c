@@ -27,8 +27,8 @@ static double minmod(double a, double b) {
   return fabs(a) < fabs(b) ? a : b;
 }
 
-/* Limited differences of u_e along d, per leaf edge, of leaves that have a face
- * in the band; none in cut leaves. */
+/* Set limited differences of u_e along d, per leaf edge, of leaves that have a
+ * face in the band; none in cut leaves. */
 static void limited_slopes(const struct mesh *mesh, int d, const double *c,
                            const double *band, double *const u[DIM],
                            double *const slope[DIM]) {

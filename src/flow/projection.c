@@ -27,8 +27,9 @@ struct solve_stats projection_project(const struct projection *projection,
   return stats;
 }
 
-/* What a face sees of the velocity on `side`: a node, or the leaf itself where
- * the density of a coarse leaf varies over its virtual children. */
+/* Return the node whose velocity a face takes on `side`: that of its stencil,
+ * or the leaf itself where the density of a coarse leaf varies over its virtual
+ * children. */
 static int32_t source_of_velocity(const struct mesh *mesh, const double *rho,
                                   int32_t f, int side) {
   const int32_t node = mesh->face_node[f][side];

@@ -35,9 +35,9 @@ void vof_reconstruct(const struct mesh *mesh, const double *c,
   mesh_fill_ghosts(mesh, DIM + 1, v);
 }
 
-/* Fraction of the volume swept through a face, |u| dt / h_face = swept, that
- * the plane of the upwind leaf fills. The leaf may be twice as large as the
- * face: then the face's part of it is one of its children. */
+/* Return the fraction of the volume swept through a face, |u| dt / h_face =
+ * swept, that the plane of the upwind leaf fills. The leaf may be twice as
+ * large as the face: then the face's part of it is one of its children. */
 static double swept_fraction(const struct mesh *mesh, int d, int32_t face,
                              int upwind, double swept,
                              double *const normal[DIM], const double *alpha) {

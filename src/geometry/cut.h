@@ -47,24 +47,25 @@ static inline void sorted_components(const double n[DIM], double norm,
 
 #if DIM == 2
 
-/* Equation (2) for 0 <= a <= 1/2. */
+/* Evaluate equation (2) for 0 <= a <= 1/2. */
 static inline double small_volume(const double m[2], double a) {
   if (a < m[0]) return a / m[0] * a / (2. * m[1]);
   return (a - 0.5 * m[0]) / m[1];
 }
 
-/* Derivative dV/da of small_volume. */
+/* Return the derivative dV/da of small_volume. */
 static inline double small_slope(const double m[2], double a) {
   return a < m[0] ? a / m[0] / m[1] : 1. / m[1];
 }
 
-/* Inverse of small_volume for 0 < c <= 1/2. */
+/* Return the inverse of small_volume for 0 < c <= 1/2. */
 static inline double small_offset(const double m[2], double c) {
   if (c * 2. * m[1] < m[0]) return sqrt(2. * m[0] * m[1] * c);
   return c * m[1] + 0.5 * m[0];
 }
 
-/* Centroid y of the cut in the unit square with its corner on the origin. */
+/* Find the centroid y of the cut in the unit square with its corner on the
+ * origin. */
 static inline void small_centroid(const double m[2], double a, double y[2]) {
   if (a < m[0]) {
     y[0] = 0.5 * a / m[0];
@@ -87,7 +88,7 @@ static inline void small_centroid(const double m[2], double a, double y[2]) {
  * takes m1^2 t_i^3/(6 m2 m3) from the volume.
  */
 
-/* Equation (2) for 0 <= a <= 1/2. */
+/* Evaluate equation (2) for 0 <= a <= 1/2. */
 static inline double small_volume(const double m[3], double a) {
   if (a < m[0]) return a / m[0] * (a / m[1]) * a / (6. * m[2]);
   double m12 = m[0] + m[1];
@@ -100,7 +101,7 @@ static inline double small_volume(const double m[3], double a) {
   return v / (6. * m[1] * m[2]);
 }
 
-/* Derivative dV/da of small_volume. */
+/* Return the derivative dV/da of small_volume. */
 static inline double small_slope(const double m[3], double a) {
   if (a < m[0]) return a / m[0] * (a / m[1]) / (2. * m[2]);
   if (a >= m[0] + m[1]) return 1. / m[2];
@@ -112,12 +113,12 @@ static inline double small_slope(const double m[3], double a) {
   return v / (2. * m[1] * m[2]);
 }
 
-/* Root z = -2 r sin(phi) of z^3 - 3 r^2 z = 2 r^3 sin(3 phi). */
+/* Return the root z = -2 r sin(phi) of z^3 - 3 r^2 z = 2 r^3 sin(3 phi). */
 static inline double cubic_root(double r, double sin3phi) {
   return -2. * r * sin(asin(min2(sin3phi, 1.)) / 3.);
 }
 
-/* Inverse of small_volume for 0 < c <= 1/2. */
+/* Return the inverse of small_volume for 0 < c <= 1/2. */
 static inline double small_offset(const double m[3], double c) {
   double m12 = m[0] + m[1], gap = m12 - m[2];
   if (m[1] <= 0. || (gap <= 0. && 2. * c * m[2] >= m12))
@@ -140,8 +141,9 @@ static inline double small_offset(const double m[3], double c) {
 }
 
 /*
- * Centroid y of the cut in the unit cube with its corner on the origin: the
- * centroid of its shadow on (y1, y2), then y3 from the plane. m3 >= 1/3.
+ * Find the centroid y of the cut in the unit cube with its corner on the
+ * origin: the centroid of its shadow on (y1, y2), then y3 from the plane. m3 >=
+ * 1/3.
  */
 static inline void small_centroid(const double m[3], double a, double y[3]) {
   if (a < m[0]) {
@@ -169,7 +171,7 @@ static inline void small_centroid(const double m[3], double a, double y[3]) {
 
 #endif
 
-/* As sorted_components, and remember where each component went. */
+/* Sort as sorted_components, and remember where each component went. */
 static inline struct cut cut_sorted(const double n[DIM], double norm) {
   struct cut cut = {.norm = norm};
   double m[DIM];
@@ -184,7 +186,7 @@ static inline struct cut cut_sorted(const double n[DIM], double norm) {
 }
 
 /*
- * Centroid x of the cut of the plane n . x = alpha, in the cell's own
+ * Find the centroid x of the cut of the plane n . x = alpha, in the cell's own
  * coordinates. cut is that of n; cut->norm > 0.
  */
 static inline void cut_centroid(const struct cut *cut, const double n[DIM],

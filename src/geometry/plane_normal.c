@@ -10,7 +10,7 @@ static const int STRIDE[3] = {1, 3, 9};
 /* Misfit of the mixed normal from which on the fit is taken as it is. */
 static const double ROUGH = DIM == 2 ? 0.1 : 1.;
 
-/* The two paired neighbours of cell i at distance s. */
+/* Add the two paired neighbours of cell i at distance s. */
 static inline double pair(const double *c, int i, int s) {
   return c[i - s] + c[i + s];
 }
@@ -20,7 +20,8 @@ static inline double column(const double *c, int i, int s) {
   return c[i] + pair(c, i, s);
 }
 
-/* Weighted sum (1 2 1 in each direction) over the layer through cell i. */
+/* Return the weighted sum (1 2 1 in each direction) over the layer through cell
+ * i. */
 static inline double layer(const double *c, int i, int d) {
   int e = STRIDE[(d + 1) % DIM];
 #if DIM == 2
@@ -40,7 +41,7 @@ static inline void normalise(double n[DIM]) {
     for (int d = 0; d < DIM; d++) n[d] /= norm;
 }
 
-/* Youngs' normal, minus the weighted gradient of c, with |n|_1 = 1. */
+/* Find Youngs' normal, minus the weighted gradient of c, with |n|_1 = 1. */
 static inline void youngs_normal(const double *c, double n[DIM]) {
   const int centre = PLANE_STENCIL / 2;
   for (int d = 0; d < DIM; d++)
@@ -49,8 +50,9 @@ static inline void youngs_normal(const double *c, double n[DIM]) {
 }
 
 /*
- * Centred normal from the columns along d, with |n|_1 = 1; side is the sign of
- * its component d, 0 for a stencil that does not tell the two sides apart.
+ * Find the centred normal from the columns along d, with |n|_1 = 1; side is the
+ * sign of its component d, 0 for a stencil that does not tell the two sides
+ * apart.
  */
 static inline void column_normal(const double *c, int d, double side,
                                  double n[DIM]) {
@@ -64,7 +66,7 @@ static inline void column_normal(const double *c, int d, double side,
   normalise(n);
 }
 
-/* Mixed Youngs-centred normal: the start of the fit. */
+/* Find the mixed Youngs-centred normal, the start of the fit. */
 static void mixed_normal(const double c[PLANE_STENCIL], double n[DIM]) {
   const double tie = 1. - 1e-10;
   double youngs[DIM], centred[DIM][DIM], largest = 0., youngs_largest = 0.;
@@ -90,7 +92,8 @@ static void mixed_normal(const double c[PLANE_STENCIL], double n[DIM]) {
 enum { GRADIENT = 1, HESSIAN = 1 + DIM, TERMS = HESSIAN + DIM * (DIM + 1) / 2 };
 
 /*
- * One cell's share of the sums, from its residual r = V - c and the derivative
+ * Add the share of one cell to the sums, from its residual r = V - c and the
+ * derivative
  *
  *   dV/dn = dV/dalpha (x_0 - x_k),   x the centroids of the plane's cuts,
  *
@@ -120,9 +123,9 @@ static inline void add_cell(const struct cut *cut, const double n[DIM],
 }
 
 /*
- * Misfit over the known cells of the plane with normal n, |n|_1 = 1, and its
- * derivatives. Sums run over -1, 1, 0 along each axis, rows first: a reflection
- * changes no bit of them.
+ * Measure the misfit over the known cells of the plane with normal n, |n|_1 =
+ * 1, and its derivatives. Sums run over -1, 1, 0 along each axis, rows first: a
+ * reflection changes no bit of them.
  */
 static void measure_misfit(const double *c, const bool *known,
                            const double n[DIM], double sum[TERMS]) {
@@ -171,8 +174,8 @@ static inline void solve_symmetric(double h[DIM][DIM], double x[DIM]) {
 }
 
 /*
- * Gauss-Newton step. The Hessian H takes n to 0, as the length of n does not
- * matter: tr(H) n n^T is added, and the step is orthogonal to n. Damping in
+ * Find a Gauss-Newton step. The Hessian H takes n to 0, as the length of n does
+ * not matter: tr(H) n n^T is added, and the step is orthogonal to n. Damping in
  * proportion to the misfit holds it where few cells are cut, and lets it
  * converge quadratically to a plane. Returns the expected fall of the misfit.
  */

@@ -22,8 +22,8 @@ struct shape {
   void *context;
 };
 
-/* A power of two changes no fraction, and sums of values near the largest
- * number there is do not overflow. */
+/* Evaluate f times a power of two, which changes no fraction, so that sums of
+ * values near the largest number there is do not overflow. */
 static double evaluate(const struct shape *shape, const double x[DIM]) {
   double point[3] = {0., 0., 0.};
   for (int d = 0; d < DIM; d++) point[d] = x[d];
@@ -33,7 +33,7 @@ static double evaluate(const struct shape *shape, const double x[DIM]) {
 /* Is vertex v on the upper (1) or lower (-1) side of axis d? */
 static inline int side(int v, int d) { return (v >> d & 1) ? 1 : -1; }
 
-/* Largest change of f from the centre to a vertex. */
+/* Return the largest change of f from the centre to a vertex. */
 static double variation(const struct piece *p) {
   double largest = 0.;
   for (int v = 0; v < NVERTEX; v++)
@@ -41,8 +41,8 @@ static double variation(const struct piece *p) {
   return largest;
 }
 
-/* 1 if f > 0 at all points of the piece, -1 if f < 0, else 0. Vertices within
- * `tolerance` of 0 do not object. */
+/* Return 1 if f > 0 at all points of the piece, -1 if f < 0, else 0. Vertices
+ * within `tolerance` of 0 do not object. */
 static int common_sign(const struct piece *p, double tolerance) {
   int sign = (p->centre > 0.) - (p->centre < 0.);
   for (int v = 0; v < NVERTEX; v++)
@@ -50,7 +50,7 @@ static int common_sign(const struct piece *p, double tolerance) {
   return sign;
 }
 
-/* Fraction of the smallest piece, which is not halved any more. */
+/* Return the fraction of the smallest piece, which is not halved any more. */
 static double cut_piece(const struct piece *p) {
   double mean = 0., n[DIM], norm = 0., residual = 0.;
   for (int v = 0; v < NVERTEX; v++) mean += p->vertex[v] / NVERTEX;
@@ -75,8 +75,8 @@ static double cut_piece(const struct piece *p) {
   return plane_volume(n, alpha);
 }
 
-/* Level set on the lattice of half-edges: lattice[i + 3 j + 9 k] lies at
- * (i - 1, j - 1, k - 1) h/2 from the centre. */
+/* Fill the level set on the lattice of half-edges: lattice[i + 3 j + 9 k] lies
+ * at (i - 1, j - 1, k - 1) h/2 from the centre. */
 static void fill_lattice(const struct shape *shape, const struct piece *p,
                          double lattice[NLATTICE]) {
   for (int s = 0; s < NLATTICE; s++) {
@@ -96,7 +96,7 @@ static void fill_lattice(const struct shape *shape, const struct piece *p,
   }
 }
 
-/* Child of p on the side of vertex `child`. */
+/* Return the child of p on the side of vertex `child`. */
 static struct piece half(const struct shape *shape, const struct piece *p,
                          const double lattice[NLATTICE], int child) {
   static const int stride[3] = {1, 3, 9};
@@ -112,7 +112,7 @@ static struct piece half(const struct shape *shape, const struct piece *p,
   return q;
 }
 
-/* Fraction of a piece that may still be halved `depth` times. */
+/* Return the fraction of a piece that may still be halved `depth` times. */
 static double piece_fraction(const struct shape *shape, const struct piece *p,
                              int depth) {
   int sign = common_sign(p, 0.);

@@ -73,7 +73,7 @@ static int ask(struct side_map *map, const double t[2]) {
   return boundary;
 }
 
-/* The one boundary at all points of the cell's raster, or -1. */
+/* Return the one boundary at all points of the cell's raster, or -1. */
 static int ask_cell(struct side_map *map, const struct cell *cell) {
   const int n = map->samples + 1;
   const int all = map->layout.naxes == 1 ? n : n * n;
@@ -100,7 +100,7 @@ struct probe {
 
 static void measure(struct probe *probe, int axis, double mean[]);
 
-/* Mean over the axes below `axis`, which is at t. */
+/* Measure the mean over the axes below `axis`, which is at t. */
 static void measure_at(struct probe *probe, int axis, double t, double mean[]) {
   probe->t[axis] = t;
   measure(probe, axis - 1, mean);
@@ -130,8 +130,8 @@ static void add_piece(struct probe *probe, int axis, double a, double b,
   add_piece(probe, axis, t, b, middle, at_b, sum);
 }
 
-/* Mean of each boundary's presence over the axes up to `axis`, the others
- * being at probe->t. */
+/* Measure the mean presence of each boundary over the axes up to `axis`, the
+ * others being at probe->t. */
 static void measure(struct probe *probe, int axis, double mean[]) {
   memset(mean, 0, SIDE_MAP_MOST * sizeof *mean);
   if (axis < 0) {
@@ -152,7 +152,7 @@ static void measure(struct probe *probe, int axis, double mean[]) {
   }
 }
 
-/* Parts of a face from points alone. */
+/* Measure the parts of a face from points alone. */
 static void count_points(struct side_map *map, const double low[2], double h,
                          double part[]) {
   const int n = map->samples, all = map->layout.naxes == 1 ? n : n * n;
@@ -164,7 +164,7 @@ static void count_points(struct side_map *map, const double low[2], double h,
   }
 }
 
-/* Parts of a face, without those that are next to nothing. */
+/* Measure the parts of a face, without those that are next to nothing. */
 static void measure_face(struct side_map *map, const double low[2], double h,
                          double part[]) {
   struct probe probe = {map, {low[0], low[1]}, h, {0}, MOST_PER_FACE};
@@ -247,7 +247,8 @@ static void build(struct side_map *map, int32_t i, const struct cell *cell) {
   }
 }
 
-/* Level and density of the raster, as fine as the number of points allows. */
+/* Choose level and density of the raster, as fine as the number of points
+ * allows. */
 static void choose_raster(struct side_map *map) {
   const struct side_map_layout *layout = &map->layout;
   const int naxes = layout->naxes;
@@ -374,7 +375,8 @@ static uint32_t list_within(const struct side_map *map, int32_t i,
   return found;
 }
 
-/* Tree along an axis that holds the coordinate t, or the nearest one. */
+/* Return the tree along an axis that holds the coordinate t, or the nearest
+ * one. */
 static int tree_at(const struct side_map *map, int axis, double t) {
   const double tree = floor((t - map->layout.origin[axis]) / map->layout.size);
   return (int)min2(max2(tree, 0), map->layout.trees[axis] - 1);

@@ -20,7 +20,7 @@ static bool is_surface(double c) {
   return c > PARAMS_GAS && c < 1 - PARAMS_GAS;
 }
 
-/* mark [ncells] = 1 in leaves cut by the surface, or between a full and an
+/* Set mark [ncells] to 1 in leaves cut by the surface, or between a full and an
  * empty neighbour. */
 static void mark_surface(const struct mesh *mesh, const double *c,
                          double *mark) {
@@ -100,7 +100,8 @@ static void want_inside(struct wanted *wanted,
   }
 }
 
-/* Half the second difference of the velocity: what merging would lose. */
+/* Ask for leaves by half the second difference of the velocity, which merging
+ * would lose. */
 static void want_estimate(struct wanted *wanted,
                           const struct criterion *criterion) {
   const struct mesh *mesh = wanted->grid->mesh;
@@ -187,7 +188,7 @@ static bool is_allowed(struct grid *grid, double count) {
   return true;
 }
 
-/* Above the caps nothing is divided any more. */
+/* Take back all divisions if the grid would exceed a cap. */
 static void cap_count(struct grid *grid, int8_t *flag) {
   const struct mesh *mesh = grid->mesh;
   double growth = 0;

@@ -34,13 +34,13 @@ struct walk {
   struct cell *cell; /* [n], at most MOST_CELLS NCHILD */
 };
 
-/* Between 0 and 1, always the same sequence. */
+/* Draw a number between 0 and 1, always from the same sequence. */
 static double draw(struct walk *walk) {
   walk->random = walk->random * 6364136223846793005u + 1442695040888963407u;
   return (double)(walk->random >> 11) * 0x1p-53;
 }
 
-/* The domain along axis d. */
+/* Give the extent of the domain along axis d. */
 static void extent(const struct params *params, int d, double *low,
                    double *high) {
   *low = params->origin[d];
@@ -90,10 +90,10 @@ static void look_for_grains(const struct walk *walk, struct cell *cell,
   if (!*some) cell->bare = width;
 }
 
-/* How far from a region of level `finest` cells of this level are divided, in
- * cells of this level, if those of level finest - 1 are within so many finest
- * `cells` of it. 2:1 balance divides what touches a divided cell one level
- * finer, which reaches 1/2 to 1 of its size beyond that distance. */
+/* Return how far from a region of level `finest` cells of this level are
+ * divided, in cells of this level, if those of level finest - 1 are within so
+ * many finest `cells` of it. 2:1 balance divides what touches a divided cell
+ * one level finer, which reaches 1/2 to 1 of its size beyond that distance. */
 static double reach(const struct walk *walk, int finest, double cells) {
   double r = 0.5 * cells;
   for (int l = finest - 2; l >= walk->level; l--) r = 0.5 * (r + 0.75);
@@ -112,7 +112,8 @@ static bool wants_position(const struct walk *walk, const struct cell *cell,
   return false;
 }
 
-/* Half the second difference of the initial velocity, as adapt.c takes it. */
+/* Is half the second difference of the initial velocity, as adapt.c takes it,
+ * above the threshold? */
 static bool wants_velocity(const struct walk *walk, const struct cell *cell,
                            const struct criterion *criterion) {
   for (int e = 0; e < DIM; e++) {
@@ -188,8 +189,8 @@ static void thin(struct walk *walk) {
   walk->n = MOST_CELLS;
 }
 
-/* Cells become their children where they are divided; returns how many leaves
- * the others stand for. */
+/* Replace cells by their children where they are divided; returns how many
+ * leaves the others stand for. */
 static double descend(struct walk *walk) {
   struct cell *next = mem_alloc((size_t)walk->n * NCHILD, sizeof(struct cell));
   double leaves = 0;
@@ -216,7 +217,7 @@ static double descend(struct walk *walk) {
   return leaves;
 }
 
-/* The trees, one cell each. */
+/* Begin with the trees, one cell each. */
 static void begin(struct walk *walk) {
   const struct params *params = walk->params;
   walk->n = 1;
@@ -232,7 +233,7 @@ static void begin(struct walk *walk) {
   }
 }
 
-/* Cells of a uniform grid. */
+/* Return the number of cells of a uniform grid. */
 static double uniform(const struct params *params, int level) {
   double n = ldexp(1, DIM * level);
   for (int d = 0; d < DIM; d++) n *= params->trees[d];

@@ -32,8 +32,8 @@ static int ask(const struct level_raster *raster, const double at[DIM]) {
   return (int)min2(max2(floor(level + 0.5), 0), raster->finest);
 }
 
-/* Level asked for in cell k of a level: in the middle, at the centre of a cell
- * of the finest level. */
+/* Return the level asked for in cell k of a level: in the middle, at the centre
+ * of a cell of the finest level. */
 static int8_t ask_cell(const struct level_raster *raster, int level,
                        int64_t k) {
   const double h = ldexp(raster->layout.size, -level);
@@ -48,7 +48,7 @@ static int8_t ask_cell(const struct level_raster *raster, int level,
   return (int8_t)ask(raster, x);
 }
 
-/* Each rank asks in its share of the cells. */
+/* Ask in all cells, each rank in its share. */
 static void ask_all(struct level_raster *raster, MPI_Comm comm) {
   int rank, nranks;
   MPI_CHECK(MPI_Comm_rank(comm, &rank));

@@ -20,7 +20,7 @@ static int patch_of(int boundary, int side) {
   return boundary < SIDES ? side : openings_patch_number(boundary, side / 2);
 }
 
-/* Bits of the boundaries of these types. */
+/* Return the bits of the boundaries of these types. */
 static uint32_t list_types(const struct params *params, bool outflow) {
   uint32_t found = 0;
   for (int b = 0; b < params->nboundaries; b++) {
@@ -32,7 +32,7 @@ static uint32_t list_types(const struct params *params, bool outflow) {
   return found;
 }
 
-/* The coordinates along a side of a point on it. */
+/* Give the coordinates along a side of a point on it. */
 static void point_on_side(int side, const double x[3], double t[2]) {
   int n = 0;
   for (int d = 0; d < DIM; d++) {
@@ -40,14 +40,14 @@ static void point_on_side(int side, const double x[3], double t[2]) {
   }
 }
 
-/* Velocity into the box, through the side, of an inflow. */
+/* Return the velocity into the box, through the side, of an inflow. */
 static double inward(const struct params *params, int boundary, int side) {
   const struct boundary *of = &params->boundary[boundary];
   if (of->type != BOUNDARY_INFLOW) return 0;
   return max2(0, (side & 1 ? -1 : 1) * of->velocity[side / 2]);
 }
 
-/* The largest parts come first. */
+/* Share a face among patches, the largest parts first. */
 static void share_face(const struct params *params, int side,
                        const double part[], struct patch_shares *shares) {
   double flux = 0, left[SIDE_MAP_MOST];
@@ -92,7 +92,8 @@ int openings_patch(void *context, int side, const double x[3], double h,
   return patch_of(boundary, side);
 }
 
-/* Side of the box that face f lies on, and the face's place there. */
+/* Return the side of the box that face f lies on; also gives its place there.
+ */
 static int place_of(const struct mesh *mesh, int32_t f, double t[2]) {
   const int32_t i = mesh->face_owner[f];
   int d = 0;
@@ -104,7 +105,7 @@ static int place_of(const struct mesh *mesh, int32_t f, double t[2]) {
   return side;
 }
 
-/* Bits of the boundaries that cover at most half of a side. */
+/* Return the bits of the boundaries that cover at most half of a side. */
 static uint32_t list_small(const struct side_map *map) {
   const double *covered = side_map_covered(map);
   double all = 0;
@@ -204,7 +205,8 @@ bool openings_are_fine(const struct grid *grid) {
   return mesh_max(mesh, coarse) == 0;
 }
 
-/* Bits of the boundaries that have a face on a side of the grid. Collective. */
+/* Return the bits of the boundaries that have a face on a side of the grid.
+ * Collective. */
 static uint32_t list_on_grid(const struct grid *grid, int side) {
   const struct mesh *mesh = grid->mesh;
   uint32_t found = 0;

@@ -90,7 +90,7 @@ static double *carry_cells(const struct remap *remap,
   return out;
 }
 
-/* Side f of every new leaf: the old one, the mean of the children's, or
+/* Carry side f to every new leaf: the old value, the mean of the children's, or
  * interpolated between the parent's two sides, which keeps the children
  * solenoidal. */
 static double *carry_side(const struct remap *remap, const double *v, int f) {
@@ -119,7 +119,7 @@ static double *carry_side(const struct remap *remap, const double *v, int f) {
   return out;
 }
 
-/* Face values from the sides of the leaves around them. */
+/* Set face values from the sides of the leaves around them. */
 static void sides_to_faces(const struct mesh *mesh, double *data[], double *v) {
   const size_t n = (size_t)mesh->nleaves + (size_t)mesh->nghosts;
   for (int k = 0; k <= NFACE; k++) {

@@ -77,8 +77,8 @@ static void fill_sides(void *context, int64_t first, int64_t n, void *data) {
   }
 }
 
-/* The values of a face field on all sides of the leaves. The run must not
- * notice a checkpoint: what filling changes is set back. */
+/* Write the values of a face field on all sides of the leaves. The run must not
+ * notice a checkpoint, so what filling changes is set back. */
 static void write_sides(struct hdf5_file *file, const char *path,
                         const struct mesh *mesh, const struct field *field) {
   struct sides sides = {mesh, field->v};
@@ -241,8 +241,8 @@ void checkpoint_close(struct checkpoint *checkpoint) {
   mem_free(checkpoint);
 }
 
-/* This rank's share of the leaves: the old one on as many ranks as before,
- * else an even one. */
+/* Find the share of the leaves of this rank: the old one on as many ranks as
+ * before, else an even one. */
 static void share_leaves(struct checkpoint *checkpoint, MPI_Comm comm,
                          int64_t all, int64_t *first, int64_t *n) {
   int rank, nranks, columns = 0;
@@ -288,7 +288,7 @@ struct forest *checkpoint_forest(struct checkpoint *checkpoint,
   return forest;
 }
 
-/* Each face takes the value of the side of its owner that is this face. */
+/* Set each face to the value of the side of its owner that is this face. */
 static void faces_from_sides(const struct mesh *mesh, const double *side,
                              double *v) {
   for (int d = 0; d < DIM; d++) {

@@ -10,7 +10,7 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 
-/* The directory of a file; the caller frees it with mem_free. */
+/* Return the directory of a file; the caller frees it with mem_free. */
 static char *directory_of(const char *path) {
   char *directory = MEM_NEW(char, strlen(path) + 2);
   strcpy(directory, path);

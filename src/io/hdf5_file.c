@@ -28,7 +28,7 @@ struct hdf5_file {
 /* Runs an HDF5 call; ends the program when it returns a negative number. */
 #define H5_CHECK(file, call) check((file)->path, #call, (int64_t)(call))
 
-/* The deepest message of HDF5's error stack names the cause. */
+/* Keep the deepest message of HDF5's error stack, which names the cause. */
 static herr_t keep_deepest(unsigned n, const H5E_error2_t *error, void *words) {
   (void)n;
   if (error->desc != NULL && error->desc[0] != '\0')
@@ -36,7 +36,8 @@ static herr_t keep_deepest(unsigned n, const H5E_error2_t *error, void *words) {
   return 0;
 }
 
-/* "..., error message = 'No space left on device', ...": what is quoted. */
+/* Find what is quoted in "..., error message = 'No space left on device', ...".
+ */
 static const char *find_cause(char words[WORDS_LENGTH]) {
   char *begin = strchr(words, '\'');
   begin = strstr(words, "error message = '") != NULL
@@ -49,7 +50,8 @@ static const char *find_cause(char words[WORDS_LENGTH]) {
   return begin;
 }
 
-/* The errno whose words these are, among those that advice knows; else 0. */
+/* Find the errno whose words these are, among those that have advice; else 0.
+ */
 static int find_errno(const char *words) {
   static const int known[] = {ENOSPC, EDQUOT, EFBIG, ENOENT, ESTALE};
   for (size_t k = 0; k < sizeof known / sizeof *known; k++)
@@ -72,8 +74,9 @@ static hid_t memory_type(enum hdf5_type type) {
                               : H5T_NATIVE_INT8;
 }
 
-/* How the file is reached. One rank alone needs no MPI-IO, and the plain
- * driver is faster and reports a full disk in plain words. */
+/* Make the properties by which the file is reached. One rank alone needs no
+ * MPI-IO, and the plain driver is faster and reports a full disk in plain
+ * words. */
 static hid_t access_properties(const struct hdf5_file *file) {
   hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   if (file->nranks > 1) {
@@ -163,7 +166,8 @@ struct hdf5_file *hdf5_open(MPI_Comm comm, const char *path) {
 
 MPI_Comm hdf5_comm(const struct hdf5_file *file) { return file->comm; }
 
-/* HDF5's own flush leaves the data to the operating system. */
+/* Bring a file to the disk; HDF5's own flush leaves the data to the operating
+ * system. */
 static void sync_path(const char *path) {
   FILE *f = fopen(path, "r+b");
   if (f == NULL || fsync(fileno(f)) != 0) disk_fail(path, errno);
@@ -188,8 +192,8 @@ void hdf5_write_group(struct hdf5_file *file, const char *name) {
   H5_CHECK(file, H5Gclose(group));
 }
 
-/* Rows [first, first + rows) of the dataspace of a file, and the same number
- * in memory; a rank without rows takes part with nothing selected. */
+/* Select rows [first, first + rows) of the dataspace of a file, and the same
+ * number in memory; a rank without rows takes part with nothing selected. */
 static hid_t select_rows(struct hdf5_file *file, hid_t space, int64_t first,
                          int64_t rows, int columns) {
   hsize_t start[2] = {(hsize_t)first, 0};
@@ -206,7 +210,8 @@ static hid_t select_rows(struct hdf5_file *file, hid_t space, int64_t first,
   return memory;
 }
 
-/* Where the rows of this rank begin, and how many there are of all ranks. */
+/* Find where the rows of this rank begin, and how many there are of all ranks.
+ */
 static void place_rows(MPI_Comm comm, int64_t rows, int64_t *first,
                        int64_t *all) {
   MPI_CHECK(MPI_Allreduce(&rows, all, 1, MPI_INT64_T, MPI_SUM, comm));
@@ -241,7 +246,7 @@ static struct dataset dataset_create(struct hdf5_file *file, const char *name,
   return dataset;
 }
 
-/* Rows [first, first + rows) of those of this rank. */
+/* Write rows [first, first + rows) of those of this rank. */
 static void dataset_write(struct hdf5_file *file, const struct dataset *dataset,
                           int64_t first, int64_t rows, const void *data) {
   hid_t memory = select_rows(file, dataset->space, dataset->first + first, rows,
@@ -323,15 +328,15 @@ static void write_attribute(struct hdf5_file *file, const char *object,
   H5_CHECK(file, H5Sclose(space));
 }
 
-/* A scalar for one number, as readers expect, else a vector. */
+/* Make a scalar for one number, as readers expect, else a vector. */
 static hid_t number_space(struct hdf5_file *file, int n) {
   hsize_t size = (hsize_t)n;
   return H5_CHECK(
       file, n == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, NULL));
 }
 
-/* Strings are stored without their final zero, at most what an attribute of
- * HDF5 1.10 can hold. */
+/* Make the type of a text. Strings are stored without their final zero, at most
+ * what an attribute of HDF5 1.10 can hold. */
 static hid_t text_type(struct hdf5_file *file, size_t length) {
   hid_t type = H5_CHECK(file, H5Tcopy(H5T_C_S1));
   H5_CHECK(file, H5Tset_size(type, length > 0 ? length : 1));
@@ -361,7 +366,8 @@ void hdf5_write_integer(struct hdf5_file *file, const char *object,
                   values);
 }
 
-/* The attribute if it is there, of class `kind` with n values; else -1. */
+/* Open an attribute if it is there and of class `kind` with n values; else
+ * returns -1. */
 static hid_t open_attribute(struct hdf5_file *file, const char *object,
                             const char *name, H5T_class_t kind, int64_t n) {
   if (H5Aexists_by_name(file->id, object, name, H5P_DEFAULT) <= 0) return -1;

@@ -166,7 +166,7 @@ static void remove_picture(const char *directory, const char *name) {
   mem_free(path);
 }
 
-/* Nobody writes before the old files are gone. */
+/* Wait for all ranks, so that nobody writes before the old files are gone. */
 static void wait_for_others(void) {
   if (base_size() > 1) MPI_CHECK(MPI_Barrier(MPI_COMM_WORLD));
 }

@@ -22,8 +22,8 @@ static void broadcast(void *data, size_t bytes) {
                         MPI_COMM_WORLD));
 }
 
-/* 0, or the errno that keeps `path` from being a directory we can write in,
- * now or once it is made: the nearest ancestor that is there decides. */
+/* Return 0, or the errno that keeps `path` from being a directory we can write
+ * in, now or once it is made: the nearest ancestor that is there decides. */
 static int directory_errno(const char *path) {
   char *part = MEM_NEW(char, strlen(path) + 3);
   strcpy(part, path[0] == '\0' ? "." : path);
@@ -60,7 +60,7 @@ void output_check_directory(const char *directory) {
   refuse_directory(directory, error);
 }
 
-/* mkdir -p; returns 0 or an errno. */
+/* Make directories as mkdir -p; returns 0 or an errno. */
 static int make_directories(const char *directory) {
   char *part = MEM_NEW(char, strlen(directory) + 1);
   int error = 0;

@@ -51,7 +51,7 @@ struct csv_mark profile_sync(struct profile *profile) {
   return csv_sync(profile->csv);
 }
 
-/* Whether column (i, j) or one beside it has some height. */
+/* Tell whether column (i, j) or one beside it has some height. */
 static bool is_listed(const int n[2], const double *height, int i, int j) {
   for (int b = j - 1; b <= j + 1; b++)
     for (int a = i - 1; a <= i + 1; a++)

@@ -28,8 +28,8 @@ struct progress {
   int width;                                /* of the line on the terminal */
 };
 
-/* mpirun gives its children a terminal of its own making, wherever what they
- * print goes in the end. */
+/* Is there a launcher? mpirun gives its children a terminal of its own making,
+ * wherever their output goes in the end. */
 static bool has_launcher(void) {
   return getenv("OMPI_COMM_WORLD_SIZE") != NULL || getenv("PMI_SIZE") != NULL;
 }
@@ -59,8 +59,8 @@ char *progress_duration(double seconds, char text[32]) {
   return text;
 }
 
-/* Rates since the last look, mixed into the running ones with the weight of
- * that interval. */
+/* Update rates: those since the last look are mixed into the running ones with
+ * the weight of that interval. */
 static void update_rates(struct progress *p, double now, int64_t step,
                          double time) {
   double dw = now - p->wall_rate;
@@ -76,8 +76,8 @@ static void update_rates(struct progress *p, double now, int64_t step,
   p->step_rate = step;
 }
 
-/* The line proper, in `line` [size]; under 80 columns, or a terminal would
- * wrap it. "/s" are steps per second. */
+/* Write the line proper into `line` [size]; under 80 columns, or a terminal
+ * would wrap it. "/s" are steps per second. */
 static void format_line(const struct progress *p, int64_t step, double time,
                         double dt, int64_t cells, size_t size, char *line) {
   char left[32];

@@ -81,8 +81,8 @@ static int add_up(const char *path, int64_t begin, int64_t end, uint32_t *sum) {
   return error;
 }
 
-/* Checksum of the bytes between the seal and `length`, on all ranks. Returns 0
- * or the errno of some rank. */
+/* Find the checksum of the bytes between the seal and `length`, on all ranks.
+ * Returns 0 or the errno of some rank. */
 static int add_up_shares(MPI_Comm comm, const char *path, int64_t length,
                          uint32_t *sum) {
   int rank, nranks;

@@ -34,7 +34,8 @@ static char *snapshot_path(const struct snapshots *snapshots, int number) {
   return output_path(snapshots->directory, name);
 }
 
-/* The arrays a snapshot holds, one entry per dataset with values on cells. */
+/* Describe the arrays a snapshot holds, one entry per dataset with values on
+ * cells. */
 static void describe_fields(const struct fields *fields,
                             struct xdmf_grid *grid) {
   for (int k = 0; k < fields->n; k++) {
@@ -52,7 +53,7 @@ static void describe_fields(const struct fields *fields,
   }
 }
 
-/* The part of a vector along axis d, NULL if there is none. */
+/* Return the part of a vector along axis d, NULL if there is none. */
 static const struct field *find_component(const struct fields *fields,
                                           const char *vector, int d) {
   char name[NAME_LENGTH];
@@ -73,8 +74,8 @@ static void fill_vector(void *context, int64_t first, int64_t n, void *data) {
   }
 }
 
-/* Means over the sides of the leaves; the run must not notice a snapshot, so
- * that what mesh_fill_faces changes is a copy. */
+/* Write means over the sides of the leaves. The run must not notice a snapshot,
+ * so mesh_fill_faces works on a copy. */
 static void write_sides(struct hdf5_file *file, const struct mesh *mesh,
                         const struct field *field) {
   const size_t nfaces = (size_t)mesh->nfaces_all;
@@ -152,7 +153,8 @@ static void write_mesh(struct hdf5_file *file, const struct mesh *mesh) {
   hdf5_write_text(file, "level", "title", "level of refinement");
 }
 
-/* What the index must know of a file, from the file. False if unreadable. */
+/* Read from a file what the index must know of it; returns false if it is
+ * unreadable. */
 static bool read_grid(struct hdf5_file *file, struct xdmf_grid *grid) {
   char list[4096];
   int columns;
@@ -199,8 +201,8 @@ static int compare_numbers(const void *a, const void *b) {
   return (m > n) - (m < n);
 }
 
-/* The numbers below `count` of the snapshots that are there, in order, on all
- * ranks; the caller frees them. The directory is listed, as `count` may be
+/* List the numbers below `count` of the snapshots that are there, in order, on
+ * all ranks; the caller frees them. The directory is listed, as `count` may be
  * large and the files few. */
 static int *list_numbers(const char *directory, int count, int *n) {
   DIR *list = base_rank() == 0 && count > 0 ? opendir(directory) : NULL;

@@ -10,7 +10,7 @@
 #include "talus/forest.h"
 #include "talus/memory.h"
 
-/* Leaf of this rank with the same corner k as a node, or -1. */
+/* Return the leaf of this rank with the same corner k as a node, or -1. */
 static int32_t leaf_at(const struct mesh *mesh, int32_t node, int k) {
   while (node >= mesh->begin_average && node < mesh->begin_virtual) {
     node = mesh->average_child[node - mesh->begin_average][k];
@@ -34,7 +34,8 @@ static bool same_place(const struct mesh *mesh, int32_t i, int k, int32_t j,
   return true;
 }
 
-/* Vertex at corner k of leaf i, if a leaf before it has it too, else -1. */
+/* Return the vertex at corner k of leaf i, if a leaf before it has it too, else
+ * -1. */
 static int32_t find_vertex(const struct mesh *mesh,
                            const struct vertices *vertices, int32_t i, int k) {
   for (int m = 1; m < NCHILD; m++) { /* axes along which the corner is passed */
@@ -67,7 +68,8 @@ void vertices_find(const struct mesh *mesh, struct vertices *vertices) {
 
 void vertices_free(struct vertices *vertices) { mem_free(vertices->cell); }
 
-/* Corner k of leaf i, the same to the last bit whichever leaf is asked. */
+/* Give corner k of leaf i, the same to the last bit for every leaf that has it.
+ */
 static void corner_place(const struct mesh *mesh, int32_t i, int k,
                          double x[DIM]) {
   const struct forest_layout *layout = forest_layout(mesh->forest);

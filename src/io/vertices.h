@@ -15,7 +15,7 @@ struct vertices {
   int32_t (*cell)[NCHILD]; /* [nleaves] vertex at each corner, of this rank */
 };
 
-/* Collective. */
+/* Find the vertices of the leaves. Collective. */
 void vertices_find(const struct mesh *mesh, struct vertices *vertices);
 void vertices_free(struct vertices *vertices);
 

@@ -50,7 +50,7 @@ static void add(struct xdmf *xdmf, const char *format, ...) {
   xdmf->length += (size_t)n;
 }
 
-/* Where a dataset is, and of what it is made. */
+/* Write where a dataset is, and of what it is made. */
 static void write_item(struct xdmf *xdmf, const char *kind, int bytes,
                        int64_t rows, int columns, const char *file,
                        const char *name) {
@@ -92,7 +92,7 @@ void xdmf_add(struct xdmf *xdmf, const struct xdmf_grid *grid) {
   add(xdmf, "      </Grid>\n");
 }
 
-/* The whole file anew, so that a reader never sees half of it. */
+/* Replace the whole file, so that a reader never sees half of it. */
 static void replace(const struct xdmf *xdmf, const char *path) {
   size_t size = strlen(path) + 5;
   char *draft = MEM_NEW(char, size);

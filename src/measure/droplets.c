@@ -23,7 +23,7 @@ struct link { /* of two pieces, by label */
   double a, b;
 };
 
-/* Union-find: the smallest index of a set stands for it. */
+/* Find the root of a set, the smallest index in it (union-find). */
 static int32_t find_root(int32_t *parent, int32_t i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
@@ -39,8 +39,8 @@ static void join(int32_t *parent, int32_t i, int32_t j) {
     parent[i] = j;
 }
 
-/* parent [nleaves]: an earlier leaf of the piece, the first one its own; -1
- * where there are no grains. */
+/* Set parent [nleaves] to an earlier leaf of the piece, the first one its own;
+ * -1 where there are no grains. */
 static int32_t *join_leaves(const struct mesh *mesh, const double *c,
                             double threshold) {
   int32_t *parent = MEM_NEW(int32_t, (size_t)mesh->nleaves);
@@ -54,8 +54,8 @@ static int32_t *join_leaves(const struct mesh *mesh, const double *c,
   return parent;
 }
 
-/* Pieces of this rank in order of their labels; returns how many. The parent
- * of a leaf becomes the number of its piece. */
+/* Number the pieces of this rank in order of their labels; returns how many.
+ * The parent of a leaf becomes the number of its piece. */
 static int number_pieces(const struct mesh *mesh, const double *c,
                          int32_t *parent, struct piece **pieces) {
   double first = (double)forest_first_leaf(mesh->forest);
@@ -90,7 +90,7 @@ static int compare_links(const void *p, const void *q) {
   return x->b < y->b ? -1 : x->b > y->b;
 }
 
-/* Labels of leaves and ghosts, < 0: no grains. */
+/* Label leaves and ghosts, < 0: no grains. */
 static double *label_leaves(const struct mesh *mesh, const int32_t *number,
                             const struct piece *pieces) {
   double *label = MEM_NEW(double, (size_t)(mesh->nleaves + mesh->nghosts));
@@ -100,8 +100,8 @@ static double *label_leaves(const struct mesh *mesh, const int32_t *number,
   return label;
 }
 
-/* Links across faces between this rank and others, each once. Every such face
- * is listed on one of its two ranks. number [nleaves] of pieces. */
+/* List links across faces between this rank and others, each once. Every such
+ * face is listed on one of its two ranks. number [nleaves] of pieces. */
 static int list_links(const struct mesh *mesh, const int32_t *number,
                       const struct piece *pieces, struct link **links) {
   int n = 0, room = 0;
@@ -128,8 +128,8 @@ static int list_links(const struct mesh *mesh, const int32_t *number,
   return kept;
 }
 
-/* The pairs of doubles of all ranks in rank order, instead of this rank's,
- * which are freed; returns how many. */
+/* Gather the pairs of doubles of all ranks in rank order, instead of this
+ * rank's, which are freed; returns how many. */
 static int gather_pairs(const struct mesh *mesh, int n, void **pairs) {
   int *count = MEM_NEW(int, (size_t)mesh->nranks);
   int *begin = MEM_NEW(int, (size_t)mesh->nranks);
@@ -162,7 +162,7 @@ static int32_t find_piece(int n, const struct piece *pieces, double label) {
   return (int32_t)(piece - pieces);
 }
 
-/* root [npieces] of the sets of all pieces. */
+/* Find the roots [npieces] of the sets of all pieces. */
 static int32_t *join_pieces(int npieces, const struct piece *pieces, int nlinks,
                             const struct link *links) {
   int32_t *root = MEM_NEW(int32_t, (size_t)npieces);
@@ -174,7 +174,8 @@ static int32_t *join_pieces(int npieces, const struct piece *pieces, int nlinks,
   return root;
 }
 
-/* The set of the largest volume; counts the others. -1 if there is none. */
+/* Find the set of the largest volume and count the others. -1 if there is none.
+ */
 static int32_t find_heap(int n, const struct piece *pieces, const int32_t *root,
                          struct droplets *droplets) {
   double *volume = MEM_NEW(double, (size_t)n), all = 0;

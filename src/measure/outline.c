@@ -21,7 +21,8 @@ int outline_axis(const double gravity[DIM]) {
   return count == 1 ? axis : DIM - 1;
 }
 
-/* Level of the columns: the finest one that is not too many of them. */
+/* Return the level of the columns: the finest one that is not too many of them.
+ */
 static int column_level(const struct mesh *mesh, const int horizontal[2]) {
   const int *trees = forest_layout(mesh->forest)->trees;
   int level = mesh->level_finest;
@@ -91,13 +92,13 @@ double outline_height(const struct outline *outline) {
   return height;
 }
 
-/* Height at which a heap of this largest height ends. */
+/* Return the height at which a heap of this largest height ends. */
 static double end_height(const struct outline *o, double height) {
   return 0.5 * min2(o->spacing, height);
 }
 
-/* Where the heap ends, in columns from the centre of column 0, walking from
- * `start` in steps of +1 or -1 over heights h [n]. */
+/* Find where the heap ends, in columns from the centre of column 0, walking
+ * from `start` in steps of +1 or -1 over heights h [n]. */
 static double walk(int n, const double *h, double threshold, int start,
                    int step) {
   for (int k = start; k + step >= 0 && k + step < n; k += step)
@@ -134,8 +135,8 @@ static double front_2d(const struct outline *o) {
   return o->first[0] + o->spacing * (take_lower ? lower : upper);
 }
 
-/* Largest height in the first and in the last row across axis k, and the
- * centre of the heap along it, in columns. */
+/* Find the largest height in the first and in the last row across axis k, and
+ * the centre of the heap along it, in columns. */
 static void lean(const struct outline *o, int k, double *first, double *last,
                  double *centre) {
   double mass = 0, moment = 0;
@@ -153,7 +154,8 @@ static void lean(const struct outline *o, int k, double *first, double *last,
   *centre = mass > 0 ? moment / mass : 0;
 }
 
-/* Axis of the rings, in columns, and which directions count in the radius. */
+/* Find the axis of the rings, in columns, and which directions count in the
+ * radius. */
 static void find_axis(const struct outline *o, double axis[2],
                       double weight[2]) {
   const double threshold = end_height(o, outline_height(o));

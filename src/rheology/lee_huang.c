@@ -68,8 +68,8 @@ static double node(const struct axis *axis, int i) {
   return axis->first + i / axis->per_step;
 }
 
-/* First of the four nodes around x, and their weights. Outside it is the value
- * of the end; NaN gets node 0 and NaN weights. */
+/* Return the first of the four nodes around x; also gives their weights.
+ * Outside, the value is that of the end; NaN gets node 0 and NaN weights. */
 static inline int four_nodes(const struct axis *axis, double x, double w[4]) {
   double t = (x - axis->first) * axis->per_step;
   t = at_most(at_least(t, 0), axis->last);
@@ -83,9 +83,9 @@ static inline int four_nodes(const struct axis *axis, double x, double w[4]) {
   return i;
 }
 
-/* ln x of a normal x > 0 to 1e-9, enough for a coordinate, and vectorised as
- * log is not: x = 2^k m, 1/sqrt(2) <= m < sqrt(2), and the series of
- * ln m = 2 artanh(t). */
+/* Return ln x of a normal x > 0 to 1e-9, enough for a coordinate, and
+ * vectorised as log is not: x = 2^k m, 1/sqrt(2) <= m < sqrt(2), and the series
+ * of ln m = 2 artanh(t). */
 static inline double quick_log(double x) {
   const uint64_t root = 0x3fe6a09e667f3bcd; /* 1/sqrt(2) */
   uint64_t bits;
@@ -161,7 +161,8 @@ static void set_kinetic(const struct table *table, int32_t n,
   }
 }
 
-/* In passes over the block, as one cell is a long chain of dependent steps. */
+/* Find the states of a block in several passes, as one cell is a long chain of
+ * dependent steps. */
 static void find_states(const struct rheology *r, int32_t n,
                         const double *gamma, const double *p,
                         struct states *s) {
@@ -183,7 +184,7 @@ static void find_states(const struct rheology *r, int32_t n,
   set_kinetic(table, n, s);
 }
 
-/* (1 - exp(-n gamma/2))/gamma, eq. 18 */
+/* Return (1 - exp(-n gamma/2))/gamma, eq. 18 */
 static inline double regularised(double n, double gamma) {
   const double x = at_least(0.5 * n * gamma, DBL_MIN);
   return x > 40 ? 1 / gamma : 0.5 * n * (-expm1(-x) / x);
@@ -232,8 +233,8 @@ static void eval_contact(const struct rheology *r, int32_t n,
   for (int32_t i = 0; i < n; i++) out[i] = s.pE_over_p[i];
 }
 
-/* [lee_huang_chiew_2015, section V C 4], the limits the right way round; solid
- * where eq. 18 gives less than 99 % of the yield stress. */
+/* Find the state [lee_huang_chiew_2015, section V C 4], the limits the right
+ * way round; solid where eq. 18 gives less than 99 % of the yield stress. */
 static void eval_state(const struct rheology *r, int32_t n,
                        const double *restrict shear_rate,
                        const double *restrict pressure, double *restrict out) {
@@ -263,7 +264,8 @@ static const struct rheology_quantity OUTPUTS[] = {
      eval_state},
 };
 
-/* Axes of the packed tables. They end where nu is within ERROR of its limit. */
+/* Set the axes of the packed tables, which end where nu is within ERROR of its
+ * limit. */
 static void set_axes(struct table *table, const double *param) {
   const double nu_0 = param[LEE_HUANG_NU_0], nu_min = param[LEE_HUANG_NU_MIN];
   const double I_least =

@@ -37,7 +37,7 @@ double lee_huang_packing(const double *param, double nu) {
   return 2 * nu * pow(excess, param[LEE_HUANG_CHI]) * sine * sine;
 }
 
-/* I of the dilatancy law (23) at a solid fraction. */
+/* Return I of the dilatancy law (23) at a solid fraction. */
 static double dilatancy(const double *param, double nu) {
   const double excess = fmax(1 / nu - 1 / param[LEE_HUANG_NU_0], 0);
   return pow(excess / param[LEE_HUANG_A], 1 / param[LEE_HUANG_DELTA]);
@@ -49,7 +49,7 @@ struct balance {
   double I_2, K_over_p;
 };
 
-/* Contact alone: f_2 >= f_3. */
+/* Return the residual of (A3) by contact alone, f_2 >= f_3. */
 static double dense_residual(double nu, void *context) {
   const struct balance *b = (const struct balance *)context;
   const double I = dilatancy(b->param, nu);
@@ -57,20 +57,20 @@ static double dense_residual(double nu, void *context) {
          b->I_2 / fmax(I * I, 1e-200) - 1;
 }
 
-/* Collisions alone: f_3 >= f_2, no packing. */
+/* Return the residual of (A3) by collisions alone, f_3 >= f_2, no packing. */
 static double inertial_residual(double nu, void *context) {
   const struct balance *b = (const struct balance *)context;
   return lee_huang_kinetic(b->param, nu).pressure * b->I_2 - 1;
 }
 
-/* f_3/f_2 - 1, < 0 where there is contact. */
+/* Return f_3/f_2 - 1, < 0 where there is contact. */
 static double transition_residual(double nu, void *context) {
   const struct balance *b = (const struct balance *)context;
   const double I = dilatancy(b->param, nu);
   return lee_huang_kinetic(b->param, nu).pressure * I * I - 1;
 }
 
-/* Where the kinetic pressure at given I is least between low and high, by
+/* Find where the kinetic pressure at given I is least between low and high, by
  * golden section: there I is largest. */
 static double find_last(const double *param, double low, double high) {
   const double ratio = 0.5 * (sqrt(5) - 1);
@@ -86,7 +86,7 @@ static double find_last(const double *param, double low, double high) {
   return 0.5 * (low + high);
 }
 
-/* Downward from nu_tran, the first minimum. */
+/* Search downward from nu_tran for the first minimum. */
 static double search_last(const double *param, double nu_tran) {
   const double step = (nu_tran - NU_LEAST) / STEPS;
   double least = lee_huang_kinetic(param, nu_tran).pressure;

@@ -46,8 +46,8 @@ static inline double at_most(double a, double high) {
   return a > high ? high : a;
 }
 
-/* gamma^exponent, exponent >= -1. What is left of gamma below 1e-250 is
- * raised to that, so that neither this nor 1e30 times it overflows. */
+/* Return gamma^exponent, exponent >= -1; gamma counts as at least 1e-250, so
+ * that neither the result nor 1e30 times it overflows. */
 static inline double rate_power(double gamma, double exponent) {
   return pow(at_least(gamma, 1e-250), exponent);
 }

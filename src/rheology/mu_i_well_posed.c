@@ -65,7 +65,7 @@ static void eval(const struct rheology *r, int32_t n,
   for (int32_t i = 0; i < n; i++) eta[i] = 0.;
 }
 
-/* mu p; with root = sqrt(p), I = rate/root. */
+/* Compute mu p, with root = sqrt(p) and I = rate/root. */
 static void yield(const struct rheology *r, int32_t n,
                   const double *restrict shear_rate,
                   const double *restrict pressure, double *restrict tau_y) {

@@ -10,9 +10,9 @@
 #include "talus/memory.h"
 
 /*
- * eta += tau_y/gamma, equation (2). tau_y/gamma exceeds eta_max below
- * gamma = tau_y/eta_max, and the floor there keeps the division finite; DBL_MIN
- * does where that underflows.
+ * Add tau_y/gamma to eta, equation (2). tau_y/gamma exceeds eta_max below gamma
+ * = tau_y/eta_max, and the floor there keeps the division finite; DBL_MIN does
+ * where that underflows.
  */
 static void add_clip(const struct rheology *r, int32_t n,
                      const double *restrict shear_rate,
@@ -24,8 +24,8 @@ static void add_clip(const struct rheology *r, int32_t n,
   }
 }
 
-/* eta += tau_y (1 - exp(-gamma/gamma_r))/gamma, equation (3). The one loop that
- * is not vectorised, for the exponential. */
+/* Add tau_y (1 - exp(-gamma/gamma_r))/gamma to eta, equation (3). The one loop
+ * that is not vectorised, for the exponential. */
 static void add_papanastasiou(const struct rheology *r, int32_t n,
                               const double *restrict shear_rate,
                               const double *restrict tau_y,
@@ -37,7 +37,7 @@ static void add_papanastasiou(const struct rheology *r, int32_t n,
   }
 }
 
-/* eta += tau_y/sqrt(gamma^2 + gamma_r^2), equation (4). */
+/* Add tau_y/sqrt(gamma^2 + gamma_r^2) to eta, equation (4). */
 static void add_bercovier_engelman(const struct rheology *r, int32_t n,
                                    const double *restrict shear_rate,
                                    const double *restrict tau_y,
@@ -74,7 +74,7 @@ static void clip_eta(const struct rheology *r, int32_t n, double *eta) {
     eta[i] = at_most(at_least(eta[i], eta_min), eta_max);
 }
 
-/* Yield stress of the closure and cohesion. */
+/* Compute the yield stress of the closure and cohesion. */
 static void yield_stress(const struct rheology *r, int32_t n,
                          const double *shear_rate, const double *pressure,
                          double *tau_y) {

@@ -4,10 +4,10 @@
 #define TALUS_RHEOLOGY_ROOTS_H
 
 /*
- * Root of f(x, context) between low and high, to the last bits; the end with
- * the smaller |f| where f does not change sign or low >= high, as rounding may
- * have it. What GSL objects to, as a function that is not finite on the way,
- * ends in its error handler (rheology_begin).
+ * Find the root of f(x, context) between low and high, to the last bits; the
+ * end with the smaller |f| where f does not change sign or low >= high, as
+ * rounding may have it. What GSL objects to, as a function that is not finite
+ * on the way, ends in its error handler (rheology_begin).
  */
 double root_between(double (*f)(double, void *), void *context, double low,
                     double high);

@@ -29,7 +29,8 @@ const struct rheology_key *rheology_key(const struct rheology_model *model,
   return i < NKEYS(SHARED) ? &SHARED[i] : NULL;
 }
 
-/* Where r keeps the value of key i, rheology_key(r->model, i) not being NULL */
+/* Return where r keeps the value of key i, rheology_key(r->model, i) not being
+ * NULL */
 static double *value_of(struct rheology *r, int i) {
   double *shared_value[NKEYS(SHARED)] = {&r->eta_min, &r->eta_max, &r->gamma_r,
                                          &r->cohesion};

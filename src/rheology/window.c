@@ -16,7 +16,7 @@ static double value(const struct rheology *r, const char *name) {
   return NAN;
 }
 
-/* ln mu at p = 1 */
+/* Return ln mu at p = 1 */
 static double log_mu(const struct rheology *r, double scale, double I) {
   const double p = 1, rate = I * scale;
   double eta;
@@ -30,7 +30,7 @@ struct neutral {
   double scale; /* gamma/I at p = 1 */
 };
 
-/* C at ln I */
+/* Return C at ln I */
 static double condition(double log_I, void *context) {
   const struct neutral *n = (const struct neutral *)context;
   const double h = 1e-4, mu = exp(log_mu(n->r, n->scale, exp(log_I)));

@@ -11,8 +11,8 @@
 
 static inline bool is_grains(double c) { return c >= 0.5; }
 
-/* du_e/dx_t of leaf i for all e; grains look at grains only, on one side if
- * need be. */
+/* Find du_e/dx_t of leaf i for all e; grains look at grains only, on one side
+ * if need be. */
 static void slopes(const struct mesh *mesh, const double *c,
                    double *const u[DIM], int32_t i, int t, double grad[DIM]) {
   const int32_t *stencil = mesh->stencil[i];
@@ -39,7 +39,7 @@ static double leaf_shear_squared(const struct mesh *mesh, const double *c,
   return sum;
 }
 
-/* The shear rate of all leaves, [nleaves]. */
+/* Set the shear rate of all leaves, [nleaves]. */
 static void set_shear_rate(const struct two_phase *sim, double *rate) {
   const struct mesh *mesh = sim->grid.mesh;
   double *u[DIM];
@@ -66,7 +66,7 @@ double closure_fields_shear_rate(const struct two_phase *sim) {
   return volume > 0 ? total / volume : 0;
 }
 
-/* The array of a field on demand. */
+/* Allocate the array of a field on demand, and return it. */
 static double *provide(struct field *field, int32_t n) {
   if (!field->v) field->v = MEM_NEW(double, n);
   return field->v;

@@ -60,7 +60,8 @@ static void end_tracer(struct two_phase *sim) {
   scratch_give(&sim->scratch, "tracer");
 }
 
-/* The planes of c are left as they are, for it may be set back. */
+/* Advance a tracer, or c, over dt. The planes of c stay as they are, as c may
+ * be set back. */
 static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
                            const double *source, struct field *tracer) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -143,7 +144,8 @@ void fractions_carry(struct two_phase *sim, double dt, const double *u_f,
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Sweeps with the velocity of the step. u, c and band are filled. */
+/* Sweep c and tracers with the velocity of the step. u, c and band are filled.
+ */
 static void sweep_fractions(struct two_phase *sim, double dt) {
   double *cc = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   carry(sim, dt, sim->u_f->v, NULL, cc);
@@ -165,7 +167,7 @@ static bool are_bounded(const struct two_phase *sim) {
   return mesh_max(sim->grid.mesh, excess) <= VOF_EMPTY;
 }
 
-/* What the sweeps have changed. */
+/* Restore what the sweeps have changed. */
 static void restore(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   field_restore(sim->c, mesh);

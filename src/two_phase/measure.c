@@ -23,7 +23,7 @@ static inline void sum_add(struct sum *sum, double x) {
   sum->value = t;
 }
 
-/* The sum over all ranks, always in the same order. */
+/* Return the sum over all ranks, always in the same order. */
 static double sum_total(const struct mesh *mesh, struct sum local) {
   struct sum *all = MEM_NEW(struct sum, (size_t)mesh->nranks);
   MPI_CHECK(
@@ -37,9 +37,9 @@ static double sum_total(const struct mesh *mesh, struct sum local) {
   return total.value + total.rest;
 }
 
-/* Centre along axis d of what lies below the plane in a cell of width 1, seen
- * from the centre of the cell: 1/2 - int m(s) ds / m(1/2), where m(s) is the
- * volume at x_d < s. Simpson's rule, good to 1e-3. */
+/* Return the centre along axis d of what lies below the plane in a cell of
+ * width 1, seen from the centre of the cell: 1/2 - int m(s) ds / m(1/2), where
+ * m(s) is the volume at x_d < s. Simpson's rule, good to 1e-3. */
 static double centroid(const double normal[DIM], double alpha, int d) {
   static const double weight[] = {1, 4, 2, 4, 1};
   double lo[DIM], hi[DIM], integral = 0, volume = 0;
@@ -55,7 +55,7 @@ static double centroid(const double normal[DIM], double alpha, int d) {
   return volume > 0 ? 0.5 - integral / volume : 0;
 }
 
-/* g.x at the centre of the grains of a leaf. */
+/* Return g.x at the centre of the grains of a leaf. */
 static double leaf_potential(const struct mesh *mesh, const double *c,
                              const double *gravity, int32_t i) {
   double potential = 0, normal[DIM], alpha;

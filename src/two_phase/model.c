@@ -22,7 +22,7 @@
 #include "talus/two_phase/step.h"
 #include "talus/two_phase/step_floor.h"
 
-/* The state that begins with this model. */
+/* Return the state that begins with this model. */
 static struct two_phase *of(struct model *model) {
   return (struct two_phase *)model;
 }
@@ -46,7 +46,8 @@ static struct model *resume(const struct params *params,
   return model_of(two_phase_new_on(params, forest));
 }
 
-/* A run that ended at rest and goes on is to be slow for as long again. */
+/* Complete a state from a checkpoint. A run that ended at rest and goes on is
+ * to be slow for as long again. */
 static void complete(struct model *model) {
   struct two_phase *sim = of(model);
   two_phase_refine_openings(sim);
@@ -211,7 +212,7 @@ static void set_row(const struct two_phase *sim, const struct diagnostics *d,
   value[GIVEN_TO_GAS] = given;
 }
 
-/* Before the first step: is there anything to simulate? */
+/* Warn before the first step if there are no grains. */
 static void check_grains(const struct two_phase *sim, double volume) {
   static const char *const text =
       "grains.shape is positive nowhere: there are no grains";

@@ -26,7 +26,7 @@
 /* Sets with less than this part of the gas are no free gas of a closed box. */
 #define SMALL_SET 0.1
 
-/* g.x at a leaf; gravity along a periodic axis has no potential. */
+/* Return g.x at a leaf; gravity along a periodic axis has no potential. */
 static double gravity_potential(const struct two_phase *sim, int32_t i) {
   const struct params *params = sim->params;
   double sum = 0;
@@ -37,7 +37,7 @@ static double gravity_potential(const struct two_phase *sim, int32_t i) {
   return sum;
 }
 
-/* Pressure less the weight of the gas. */
+/* Return the pressure less the weight of the gas. */
 static double reduced_pressure(const struct two_phase *sim, int32_t i) {
   return sim->p->v[i] - sim->params->gas.density * gravity_potential(sim, i);
 }
@@ -69,7 +69,7 @@ static void measure_sets(const struct two_phase *sim, const int32_t *set, int n,
                           mesh->comm));
 }
 
-/* Which of n sets are free gas. */
+/* Choose which of n sets are free gas. */
 static void choose_free(int n, double (*sum)[SET_SIZE], bool *is_free) {
   double gas = 0, open = 0;
   int lowest = -1;
@@ -158,7 +158,7 @@ static bool is_enclosed(const struct two_phase *sim, const double *solid,
   return most > 0.5;
 }
 
-/* Largest speed of the grains around leaf i; u filled. */
+/* Return the largest speed of the grains around leaf i; u filled. */
 static double speed_around(const struct two_phase *sim, int32_t i) {
   double most = 0;
   for (int s = 0; s < NSTENCIL; s++) {
@@ -292,7 +292,8 @@ static void add_passage(struct two_phase *sim, double dt) {
   sim->travel += mesh_max(mesh, travel);
 }
 
-/* Potential energy of the grains of this rank, by the centres of leaves. */
+/* Return the potential energy of the grains of this rank, by the centres of
+ * leaves. */
 static double potential(const struct two_phase *sim) {
   double sum = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {

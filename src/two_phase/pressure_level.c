@@ -30,7 +30,8 @@ static double mean_over_box(const struct two_phase *sim) {
   return mean_of(mesh, sum, volume).value;
 }
 
-/* Weight of a column of gas from the highest corner of the box down to x. */
+/* Return the weight of a column of gas from the highest corner of the box down
+ * to x. */
 static double weight_above(const struct params *params, const double x[DIM]) {
   double weight = 0;
   for (int d = 0; d < DIM; d++) {
@@ -67,8 +68,8 @@ static double mean_over_gas(const struct two_phase *sim) {
   return mean_over_box(sim);
 }
 
-/* p at x, from leaf i and the differences to its neighbours inside the box;
- * exact if p is linear. p filled. */
+/* Return p at x, extrapolated from leaf i and the differences to its neighbours
+ * inside the box; exact if p is linear. p filled. */
 static double extrapolate(const struct two_phase *sim, int32_t i,
                           const double x[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -89,7 +90,7 @@ static double extrapolate(const struct two_phase *sim, int32_t i,
   return value;
 }
 
-/* The mean of what the leaves that touch the point say. */
+/* Return the mean of what the leaves that touch the point say. */
 static double value_at_point(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   const double *x = sim->params->pressure_point;

@@ -16,7 +16,8 @@
 
 static inline double unit_range(double c) { return min2(max2(c, 0), 1); }
 
-/* Of leaves, not nodes: see properties.h. */
+/* Return the mean fraction of the leaves, not the nodes, of a face: see
+ * properties.h. */
 static inline double face_fraction(const struct mesh *mesh, const double *c,
                                    int32_t f) {
   const int32_t *of =
@@ -162,11 +163,11 @@ struct grains {
   const double *plane;
 };
 
-/* Part of the line from the node on `side` of a face to the face that lies
- * in the grains, by the plane of the leaf there; the node is the leaf itself
- * or one of its children. It begins on the side of the phase with most of the
- * leaf's mass, whose velocity the leaf has: at the surface if the node is on
- * the other. */
+/* Return the part in the grains of the line from the node on `side` of a face
+ * to the face, by the plane of the leaf there; the node is the leaf itself or
+ * one of its children. The line begins in the phase with most of the mass of
+ * the leaf, whose velocity the leaf has: at the surface if the node is on the
+ * other side. */
 static double line_fraction(const struct mesh *mesh, int d, int32_t f, int side,
                             const struct grains *grains) {
   const int32_t leaf = mesh->face_leaf[f][side];
@@ -189,7 +190,7 @@ static double line_fraction(const struct mesh *mesh, int d, int32_t f, int side,
   return (at_node <= 0 ? -at_node : -at_face) / fabs(at_node - at_face);
 }
 
-/* Both halves of the line of a face; one across a boundary mirrors the
+/* Give both halves of the line of a face; one across a boundary mirrors the
  * other. */
 static void line_halves(const struct mesh *mesh, int d, int32_t f,
                         const struct grains *grains, double half[2]) {
@@ -203,7 +204,8 @@ static void line_halves(const struct mesh *mesh, int d, int32_t f,
   if (leaf[1] < 0) half[1] = half[0];
 }
 
-/* grad[e][t] = du_e/dx_t at face f of axis d from the stencil of its owner. */
+/* Set grad[e][t] to du_e/dx_t at face f of axis d from the stencil of its
+ * owner. */
 static inline void face_gradient(const struct mesh *mesh, int d, int32_t f,
                                  double *const u[DIM], double grad[DIM][DIM]) {
   const int32_t *node = mesh->face_node[f];
@@ -224,7 +226,7 @@ static inline void face_gradient(const struct mesh *mesh, int d, int32_t f,
   }
 }
 
-/* 2 D:D */
+/* Return 2 D:D */
 static inline double shear_squared(double grad[DIM][DIM]) {
   double sum = 0;
   for (int e = 0; e < DIM; e++) {
@@ -270,8 +272,8 @@ void properties_shear_rate(const struct mesh *mesh, const struct skin *skin,
   for (int32_t f = 0; f < mesh->nfaces; f++) shear_f[f] = sqrt(shear_f[f]);
 }
 
-/* theta_f, p_f [nfaces]: part of each face's line in the grains, and the
- * pressure at the face. */
+/* Set theta_f [nfaces], the part of the line of a face in the grains, and p_f
+ * [nfaces], the pressure at the face. */
 static void face_pressure(const struct mesh *mesh, const struct grains *grains,
                           const double gravity[DIM], const double *p,
                           const bool *closed, double *theta_f, double *p_f) {
@@ -304,7 +306,7 @@ struct mixed {
   double shear[2][BLOCK], eta[2][BLOCK]; /* of grains and gas */
 };
 
-/* Two phases in series share the stress, not the shear rate:
+/* Find eta of two phases in series, which share the stress, not the shear rate:
  *   gamma = theta gamma_1 + (1 - theta) gamma_2,
  *   eta_1 gamma_1 = eta_2 gamma_2,
  *   eta = 1 / (theta/eta_1 + (1 - theta)/eta_2).
@@ -343,7 +345,7 @@ static void share_stress(double time, const struct rheology *const phase[2],
   m->n = 0;
 }
 
-/* eta_f of the grains (in) mixed with that of the gas. */
+/* Mix eta_f of the grains (in) with that of the gas. */
 static void mix_viscosity(const struct mesh *mesh, double time,
                           const struct rheology *const phase[2],
                           const double *theta_f, const double *shear_f,

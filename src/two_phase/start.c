@@ -32,8 +32,8 @@ static void tell(const struct beginning *beginning, const char *what,
               forest_nleaves_global(grid->forest));
 }
 
-/* Fractions of a shape. Coarse leaves are divided more often, so that what
- * is DEEPEST levels finer is not missed. */
+/* Fill a field with the fractions of a shape. Coarse leaves are divided more
+ * often, so that what is DEEPEST levels finer is not missed. */
 static void fill_shape(const struct beginning *beginning,
                        enum fineness fineness, const struct function *shape,
                        struct field *field) {
@@ -50,8 +50,8 @@ static void fill_shape(const struct beginning *beginning,
   }
 }
 
-/* Velocity of a leaf with grains and gas in it, which may move apart: that of
- * its mass, sampled on a lattice. */
+/* Return the velocity of the mass of a leaf in which grains and gas may move
+ * apart, sampled on a lattice. */
 static double mixed_velocity(const struct two_phase *sim,
                              const struct function *velocity, int32_t i) {
   enum { SAMPLES = 8, ALL = DIM == 2 ? 64 : 512 }; /* along an edge, in all */
@@ -73,7 +73,7 @@ static double mixed_velocity(const struct two_phase *sim,
   return momentum / mass;
 }
 
-/* What the grid may follow. */
+/* Fill the fields that the grid may follow. */
 static void fill_state(const struct beginning *beginning,
                        enum fineness fineness) {
   struct two_phase *sim = beginning->sim;
@@ -94,7 +94,7 @@ static void fill_state(const struct beginning *beginning,
   }
 }
 
-/* Normal velocity at the centres of the faces. */
+/* Set u_f to the normal velocity at the centres of the faces. */
 static void fill_face_velocity(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   field_fill_many(mesh, DIM, sim->u);

@@ -12,7 +12,7 @@
 #include "talus/skin.h"
 #include "talus/vof.h"
 
-/* Conditions of one boundary, on a patch across `axis`. */
+/* Set the conditions of one boundary, on a patch across `axis`. */
 static void set_patch(struct two_phase *sim, int patch, int axis,
                       const struct boundary *boundary) {
   const bool open = boundary->type == BOUNDARY_OUTFLOW;
@@ -140,7 +140,7 @@ static struct field *add_face(struct two_phase *sim, const char *name) {
                     NULL);
 }
 
-/* A field that is made when it is written. */
+/* Add a field that is made when it is written. */
 static struct field *add_output(struct two_phase *sim, const char *name,
                                 const char *unit, const char *title) {
   struct field *field = add_cell(sim, name, unit, title, NULL, true);

@@ -66,8 +66,8 @@ static void take_worst(const struct mesh *mesh, int32_t i, double rate,
   for (int d = 0; d < DIM; d++) worst->x[d] = mesh->x[i][d];
 }
 
-/* The bounds of time_step.h, up to their factors: the fastest cell, and the
- * grains with the largest acceleration. */
+/* Find the leaves behind the bounds of time_step.h: the fastest, and the grains
+ * with the largest acceleration. */
 static void find_worst(const struct two_phase *sim, struct worst *flow,
                        struct worst *forces) {
   const struct mesh *mesh = sim->grid.mesh;

@@ -52,9 +52,10 @@ static double cfl_bound(const struct two_phase *sim, double rate) {
   return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
 }
 
-/* A part of the dt in which grains that set off cross a cell. They are slower
- * yet than their acceleration would make them over it, |u| < sqrt(|g| h): the
- * viscosity is that of the last strain rate, and lags behind. */
+/* Return DT_ACCELERATION times the least dt in which grains that set off cross
+ * a cell. Such grains are slower than their acceleration would make them over a
+ * cell, |u| < sqrt(|g| h); their viscosity, from the last strain rate, lags
+ * behind. */
 static double acceleration_bound(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double most = 0;

@@ -21,7 +21,7 @@ static inline double bagnold_inertial(double slope) {
   return 0.3 * (t - 0.38) / (0.38 + 0.26 - t);
 }
 
-/* Shear rate and speed. */
+/* Return the shear rate, or the speed. */
 static inline double bagnold_rate(double slope, double y) {
   return bagnold_inertial(slope) / 0.04 * sqrt(cos(slope) * fmax(1 - y, 0));
 }
@@ -29,7 +29,7 @@ static inline double bagnold_exact(double slope, double y) {
   return 2. / 3 * bagnold_rate(slope, 0) * (1 - pow(1 - y, 1.5));
 }
 
-/* Error of u in every leaf, [nleaves], for the caller to free. */
+/* Return the error of u in every leaf, [nleaves], for the caller to free. */
 static inline double *bagnold_errors(const struct two_phase *sim,
                                      double slope) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -48,7 +48,7 @@ static inline struct norms bagnold_norms(const struct two_phase *sim,
   return norms;
 }
 
-/* A leaf next to the surface. */
+/* Return a leaf next to the surface. */
 static inline int32_t bagnold_top(const struct mesh *mesh) {
   int32_t top = 0;
   for (int32_t i = 1; i < mesh->nleaves; i++) {
@@ -57,7 +57,7 @@ static inline int32_t bagnold_top(const struct mesh *mesh) {
   return top;
 }
 
-/* Relative error of u there. */
+/* Return the relative error of u there. */
 static inline double bagnold_top_error(const struct two_phase *sim,
                                        double slope) {
   const int32_t i = bagnold_top(sim->grid.mesh);

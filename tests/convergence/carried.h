@@ -31,7 +31,7 @@ struct carried {
   double excess;  /* how far fractions leave [0, 1] */
 };
 
-/* Fractions of the shape, corners found to 1/32 of a leaf. */
+/* Fill the fractions of the shape, corners found to 1/32 of a leaf. */
 static inline void carried_shape(const struct carried *c, double *v) {
   const struct mesh *mesh = c->sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -53,15 +53,15 @@ static inline void carried_set_faces(struct carried *c) {
   mesh_fill_faces(mesh, 1, &c->steady);
 }
 
-/* Path from `time` to `time` + dt. */
+/* Return the path from `time` to `time` + dt. */
 static inline double carried_path(const struct carried *c, double dt) {
   const double time = c->sim->model.time;
   if (!c->flow->path) return dt;
   return c->flow->path(time + dt) - c->flow->path(time);
 }
 
-/* dt in which the steady flow would have gone as far as the bound allows, not
- * beyond the turn or the end. */
+/* Return the dt in which the steady flow would have gone as far as the bound
+ * allows, not beyond the turn or the end. */
 static inline double carried_dt(const struct carried *c) {
   const double time = c->sim->model.time, turn = c->flow->turn;
   const double most = courant_dt(c->sim->grid.mesh, c->steady, 0.5);
@@ -118,7 +118,7 @@ static inline void carried_step(struct carried *c) {
   carried_adapt(c, dt);
 }
 
-/* Integral of |c - exact| over the box. */
+/* Return the integral of |c - exact| over the box. */
 static inline double carried_error(struct carried *c) {
   struct two_phase *sim = c->sim;
   double *error = MEM_NEW(double, sim->grid.mesh->nleaves);
@@ -131,9 +131,9 @@ static inline double carried_error(struct carried *c) {
   return sum;
 }
 
-/* One run; adapted: the grid is fine (`level`) in a band of three cells along
- * the surface and coarse (3) elsewhere. Returns the error integral, NAN if a
- * fraction leaves [0, 1]; *drift: of the volume. */
+/* Make one run; adapted: the grid is fine (`level`) in a band of three cells
+ * along the surface and coarse (3) elsewhere. Returns the error integral, NAN
+ * if a fraction leaves [0, 1]; *drift: of the volume. */
 static inline double carried_run(const struct carried_flow *flow, int level,
                                  bool adapted, double *drift) {
   struct params params = periodic_params(level);
@@ -154,8 +154,8 @@ static inline double carried_run(const struct carried_flow *flow, int level,
   return c.excess <= 1e-12 ? error : NAN;
 }
 
-/* Rows of a flow on n levels from `first` on: the error integral divided by
- * `unit`, with bars or NULL, and the worst drift against 1e-12. error [n]:
+/* Report rows of a flow on n levels from `first` on: the error integral divided
+ * by `unit`, with bars or NULL, and the worst drift against 1e-12. error [n]:
  * out. */
 static inline void carried_report(struct report *report, const char *grid,
                                   const struct carried_flow *flow, int first,

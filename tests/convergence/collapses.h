@@ -19,8 +19,8 @@ static inline bool measure_at(struct example *example, double time,
   return good;
 }
 
-/* Run-out and height of an example over `base` at a time, for n values of a
- * parameter. */
+/* Report run-out and height of an example over `base` at a time, for n values
+ * of a parameter. */
 static inline void sweep(const char *name, const char *more, double stop,
                          double base, const char *parameter, int n,
                          const double *value, double *runout, double *height) {

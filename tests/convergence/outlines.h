@@ -94,8 +94,8 @@ static inline void reference_read_columns(const char *path, double time,
   CHECK(curve->n > 2, "%s has no outline at %g", path, time);
 }
 
-/* Symmetric difference of two outlines over the area of the first, the heights
- * of the second scaled so that both have the same area:
+/* Return the symmetric difference of two outlines over the area of the first,
+ * the heights of the second scaled so that both have the same area:
  *   int |h - s r| dx / int h dx,   s = int h dx / int r dx. */
 static inline double curve_difference(const struct curve *h,
                                       const struct curve *r) {

@@ -15,7 +15,7 @@ struct report {
   int failed;
 };
 
-/* order: NAN if there is none; bar: text, "" if there is none. */
+/* Add a row; order: NAN if there is none; bar: text, "" if there is none. */
 static void add_row(struct report *report, const char *grid, const char *norm,
                     int level, double value, double order, const char *bar,
                     bool good) {

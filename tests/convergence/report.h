@@ -25,12 +25,13 @@ struct convergence_case {
   void (*run)(struct report *report);
 };
 
-/* Rows of a case, written to `csv` and to the terminal as they come. */
+/* Begin the rows of a case, written to `csv` and to the terminal as they come.
+ */
 struct report *report_new(const char *name, FILE *csv);
 /* Ends the report; returns the number of rows that failed. */
 int report_end(struct report *report);
 
-/* One value: as it is, or with the bar that it must not pass. */
+/* Report one value: as it is, or with the bar that it must not pass. */
 void report_value(struct report *report, const char *grid, const char *norm,
                   int level, double value);
 void report_at_most(struct report *report, const char *grid, const char *norm,
@@ -38,14 +39,15 @@ void report_at_most(struct report *report, const char *grid, const char *norm,
 void report_at_least(struct report *report, const char *grid, const char *norm,
                      int level, double value, double bar);
 
-/* Errors on n levels from `first` on, each half the cell of the one before,
- * with the orders log2(error[k-1]/error[k]). bars [n]: what each error must
- * not pass, NULL: nothing; order: what the last one must reach, 0: nothing. */
+/* Report errors on n levels from `first` on, each half the cell of the one
+ * before, with the orders log2(error[k-1]/error[k]). bars [n]: what each error
+ * must not pass, NULL: nothing; order: what the last one must reach, 0:
+ * nothing. */
 void report_errors(struct report *report, const char *grid, const char *norm,
                    int first, int n, const double error[], const double bars[],
                    double order);
-/* Counts (of iterations) on n levels: each at most `most`, and all within
- * `spread` of the middle of their range; 0: no such bar. */
+/* Report counts (of iterations) on n levels: each at most `most`, and all
+ * within `spread` of the middle of their range; 0: no such bar. */
 void report_counts(struct report *report, const char *grid, const char *norm,
                    int first, int n, const int count[], int most, int spread);
 

@@ -47,7 +47,7 @@ static inline void example_destroy(struct example *example) {
   case_destroy(example->file);
 }
 
-/* Step to `time`; false if a step fails. */
+/* Advance to `time`; false if a step fails. */
 static inline bool run_to(struct two_phase *sim, double time) {
   bool good = true;
   while (good && sim->model.time < time * (1 - 1e-12)) {
@@ -56,8 +56,8 @@ static inline bool run_to(struct two_phase *sim, double time) {
   return good;
 }
 
-/* Largest change of a velocity component over the last step, per time. The
- * mesh must be the one before it. */
+/* Return the largest change of a velocity component over the last step, per
+ * time. The mesh must be the one before it. */
 static inline double run_rate(const struct two_phase *sim) {
   double most = 0;
   for (int d = 0; d < DIM; d++) {
@@ -68,7 +68,7 @@ static inline double run_rate(const struct two_phase *sim) {
   return mesh_max(sim->grid.mesh, most) / sim->model.dt;
 }
 
-/* Step until max |du/dt| < rate; false if that is not so at `time`. */
+/* Advance until max |du/dt| < rate; false if that is not so at `time`. */
 static inline bool run_steady(struct two_phase *sim, double rate, double time) {
   while (sim->model.time < time) {
     if (step_advance(sim, time - sim->model.time) != EXIT_DONE) return false;

@@ -13,7 +13,8 @@
 enum grid_kind { GRID_UNIFORM, GRID_BALL, GRID_TWO_JUMPS, NGRIDS };
 static const char *const grid_name[] = {"uniform", "adapted", "two jumps"};
 
-/* Level l everywhere, l + 1 in a ball, or l + 2 in a ball and l + 1 around. */
+/* Make a grid of level l everywhere, l + 1 in a ball, or l + 2 in a ball and l
+ * + 1 around. */
 static inline struct forest *grid_make(enum grid_kind grid, bool periodic,
                                        int l) {
   static const double centre[] = {0.31, 0.42, 0.53};
@@ -37,7 +38,8 @@ struct smooth {
   struct mode mode[3];
 };
 
-/* Its derivative, of order[d] along axis d; both orders at most 2. */
+/* Return the derivative of the smooth function, of order[d] along axis d; both
+ * orders at most 2. */
 static inline double smooth_at(const struct smooth *s, const double *x,
                                const int order[2]) {
   static const double pi = 3.14159265358979323846;
@@ -72,8 +74,8 @@ static inline double smooth_second(const struct smooth *s, const double *x,
                    (const int[]){(d == 0) + (e == 0), (d == 1) + (e == 1)});
 }
 
-/* v [nfaces_all], the caller's: a function of the face centre, 0 on walls if
- * they are closed. */
+/* Set v [nfaces_all], the caller's, to a function of the face centre, 0 on
+ * walls if they are closed. */
 typedef double (*position_function)(const void *context, const double *x);
 static inline double *face_values(const struct mesh *mesh,
                                   position_function function,
@@ -90,7 +92,7 @@ static inline double *face_values(const struct mesh *mesh,
   return v;
 }
 
-/* exp of a smooth function: a coefficient of any contrast. */
+/* Return exp of a smooth function: a coefficient of any contrast. */
 static inline double exponential(const void *smooth, const double *x) {
   return exp(smooth_value((const struct smooth *)smooth, x));
 }
@@ -109,11 +111,12 @@ static inline double largest_size(const struct mesh *mesh, const double *v) {
   return mesh_max(mesh, most);
 }
 
-/* Error of the solution of a problem on one grid. */
+/* Return the error of the solution of a problem on one grid. */
 typedef struct norms grid_solver(const void *problem, enum grid_kind grid,
                                  int level);
 
-/* Errors on levels 4 to 8 of every grid; orders that L2 and max must reach. */
+/* Report errors on levels 4 to 8 of every grid; orders that L2 and max must
+ * reach. */
 static inline void report_grids(struct report *report, const char *name,
                                 const char *field, grid_solver *solve,
                                 const void *problem, double order_l2,

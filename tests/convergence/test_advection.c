@@ -89,13 +89,13 @@ static void run_vortex(struct report *report) {
   }
 }
 
-/* 1 in a strip, for the component across the flow. */
+/* Return 1 in a strip, for the component across the flow. */
 static double strip(void *context, const double x[3]) {
   const int d = *(const int *)context;
   return d == 0 ? 1 : fabs(x[0] - 0.5) < 0.25;
 }
 
-/* How far v leaves [0, 1] while the strip goes once around. */
+/* Return how far v leaves [0, 1] while the strip goes once around. */
 static double strip_excess(enum limiter limiter) {
   struct params params = periodic_params(6);
   double most = 0;

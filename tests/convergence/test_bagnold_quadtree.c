@@ -25,7 +25,7 @@
 enum { FIRST = 4, N = 4 }; /* finest cells: 2^level over the thickness */
 static const double kFlowing = 0.43, kHeld = 0.35, kEtaMax = 1e4;
 
-/* Largest relative error of the viscosity on faces along the flow:
+/* Return the largest relative error of the viscosity on faces along the flow:
  * tan(slope) p over the exact shear rate. */
 static double viscosity_error(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -42,7 +42,7 @@ static double viscosity_error(const struct two_phase *sim) {
   return most;
 }
 
-/* Error of u relative to the exact one of the surface. */
+/* Return the error of u relative to the exact one of the surface. */
 static double creep_error(const struct two_phase *sim) {
   double *error = MEM_NEW(double, sim->grid.mesh->nleaves);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
@@ -55,7 +55,7 @@ static double creep_error(const struct two_phase *sim) {
   return l2;
 }
 
-/* Root of the integral of s e^2, e the error of u. */
+/* Return the root of the integral of s e^2, e the error of u. */
 static double deep_norm(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double *e = bagnold_errors(sim, kFlowing);

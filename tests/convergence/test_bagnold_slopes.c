@@ -11,7 +11,8 @@
 
 enum { LEVEL = 6 };
 
-/* Relative error of u of the top cell; NAN if the flow does not settle. */
+/* Return the relative error of u of the top cell; NAN if the flow does not
+ * settle. */
 static double top_error(double slope, double eta_max) {
   const double y = 1 - 0.5 / (1 << LEVEL);
   const double exact = tan(slope) > 0.38

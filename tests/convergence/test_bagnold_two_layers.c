@@ -25,13 +25,13 @@ struct layers {
   double ratio, tau_0;
 };
 
-/* I where the friction is mu, with the sign of mu. */
+/* Return I where the friction is mu, with the sign of mu. */
 static double inertial(double mu) {
   const double excess = fmax(fabs(mu) - 0.38, 0);
   return copysign(0.3 * excess / (0.26 - excess), mu);
 }
 
-/* du/dy at y. */
+/* Return du/dy at y. */
 static int shear(double y, const double u[], double dudy[], void *context) {
   (void)u;
   const struct layers *layers = (const struct layers *)context;
@@ -47,7 +47,7 @@ static int shear(double y, const double u[], double dudy[], void *context) {
   return GSL_SUCCESS;
 }
 
-/* u at y, from one of the walls 0 and 2 in whose layer y lies. */
+/* Return u at y, from one of the walls 0 and 2 in whose layer y lies. */
 static double velocity_from(double wall, double y,
                             const struct layers *layers) {
   double at = wall, u = 0;
@@ -65,8 +65,8 @@ static double jump(double tau_0, void *context) {
   return velocity_from(0, 1, &trial) - velocity_from(2, 1 + 1e-15, &trial);
 }
 
-/* tau_0 lies between those of grains that stick to the fluid's wall and of a
- * fluid that rests on grains at rest. */
+/* Find tau_0, which lies between those of grains that stick to the fluid's wall
+ * and of a fluid that rests on grains at rest. */
 static struct layers layers_of(double ratio) {
   struct layers layers = {ratio, 0};
   gsl_function function = {jump, &layers};

@@ -19,7 +19,8 @@ enum { FIRST = 4, N = 3, MOST_FACES = 1 << (FIRST + N) };
 static const double kPressure = 28, kWall = 14, kFriction = 0.32, kRise = 0.28,
                     kInertial = 0.4;
 
-/* u downwards at x: the integral from x, or the plug's edge, to the wall. */
+/* Return u downwards at x: the integral from x, or the plug's edge, to the
+ * wall. */
 static double exact(double x) {
   const double from = fmax(x / kPressure, kFriction), to = kWall / kPressure;
   const double top = kFriction + kRise;
@@ -27,8 +28,8 @@ static double exact(double x) {
          (kRise * log((top - from) / (top - to)) - (to - from));
 }
 
-/* Where the line through I/(I + I0) vanishes. Faces below 0.05 of it are in
- * or next to the plug, where eta_max acts. */
+/* Return where the line through I/(I + I0) vanishes. Faces below 0.05 of it are
+ * in or next to the plug, where eta_max acts. */
 static double plug_width(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double x[MOST_FACES], part[MOST_FACES], c0, c1, cov00, cov01, cov11, rest;
@@ -47,7 +48,7 @@ static double plug_width(const struct two_phase *sim) {
   return -c0 / c1;
 }
 
-/* Speed of the leaf next to the axis. */
+/* Return the speed of the leaf next to the axis. */
 static double plug_speed(const struct two_phase *sim) {
   int32_t axis = 0;
   for (int32_t i = 1; i < sim->grid.mesh->nleaves; i++) {

@@ -31,7 +31,7 @@ struct heap {
   int iterations[2]; /* the most in a step, but for the first ten */
 };
 
-/* One step of at most dt_max, written down. */
+/* Take one step of at most dt_max, written down. */
 static void advance_heap(struct two_phase *sim, double dt_max,
                          struct heap *heap) {
   heap->good = step_advance(sim, dt_max) == EXIT_DONE;
@@ -43,7 +43,7 @@ static void advance_heap(struct two_phase *sim, double dt_max,
   }
 }
 
-/* The collapse on a level of a box of 32 L0. steps: NULL, or a run each of
+/* Run the collapse on a level of a box of 32 L0. steps: NULL, or a run each of
  * whose steps is done in two halves. */
 static void run_collapse(int level, double box, const char *more,
                          const struct heap *steps, struct heap *heap) {
@@ -73,7 +73,7 @@ struct change {
   double front, height, outline;
 };
 
-/* Mean height of n columns. */
+/* Return the mean height of n columns. */
 static double column_mean(const struct outline *outline, int first, int n) {
   double sum = 0;
   for (int k = 0; k < n && first + k < outline->n[0]; k++) {
@@ -99,7 +99,7 @@ static struct change compare(const struct heap *a, const struct heap *b) {
                          apart / area};
 }
 
-/* front_bar: 0 if none of the three has a bar. */
+/* Report a change; front_bar: 0 if none of the three has a bar. */
 static void report_change(struct report *report, const char *grid, int level,
                           struct change change, double front_bar) {
   static const char *const name[] = {"change of front", "change of height",
@@ -115,7 +115,7 @@ static void report_change(struct report *report, const char *grid, int level,
   }
 }
 
-/* All levels of one kind of floor. */
+/* Report all levels of one kind of floor. */
 static void report_levels(struct report *report, const char *grid,
                           const char *more, double front_bar,
                           struct heap heap[LEVELS]) {
@@ -148,7 +148,8 @@ static void free_heaps(struct heap heap[LEVELS]) {
   for (int k = 0; k < LEVELS; k++) diagnostics_free(&heap[k].at_end);
 }
 
-/* Every step of a run done in two: in the box of 8 L0, without slip. */
+/* Report a run whose steps are done in two halves: in the box of 8 L0, without
+ * slip. */
 static void report_halves(struct report *report, int level,
                           const struct heap *whole) {
   static struct heap halves;

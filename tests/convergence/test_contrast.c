@@ -15,7 +15,7 @@
 
 enum { FIRST = 5, N = 5, MOST = 100, BAR = 39 };
 
-/* eta, at least 1; *contrast: of the disc to what is around it. */
+/* Return eta, at least 1; *contrast: of the disc to what is around it. */
 static double disc(const void *contrast, const double *x) {
   const double ratio = *(const double *)contrast;
   const double r = hypot(x[0] - 0.5, x[1] - 0.5);

@@ -35,7 +35,8 @@ enum { LEVEL = 4, FIRST = 5, N = 4, MOST = 100 };
 
 static const double kStiff = 1000, kSoft = 1;
 
-/* Velocity of Couette flow with the interface at height `interface`. */
+/* Return the velocity of Couette flow with the interface at height `interface`.
+ */
 static double couette(double interface, double y) {
   const double stress = 1 / (interface / kStiff + (1 - interface) / kSoft);
   return y < interface ? stress * y / kStiff : 1 - stress * (1 - y) / kSoft;
@@ -56,8 +57,9 @@ static struct params layers(double *interface, double density_soft) {
   return params;
 }
 
-/* Largest error of the velocity in all leaves but those that the interface
- * cuts, and in those. NAN if a step fails or it is not steady by the end. */
+/* Measure the largest error of the velocity in all leaves but those that the
+ * interface cuts, and in those. NAN if a step fails or it is not steady by the
+ * end. */
 static void couette_errors(double part, double density_soft, double error[2]) {
   double interface = (7 + part) / (1 << LEVEL);
   const struct params params = layers(&interface, density_soft);
@@ -95,7 +97,7 @@ enum { PLACES = 5 };
 static const double kWidth = 0.437;
 static const double kPlace[PLACES] = {0.2718, 0.0414, 0.5236, 0.7071, 0.9577};
 
-/* Distance in s from the middle of a stiff stripe: -1/2 to 1/2. */
+/* Return the distance in s from the middle of a stiff stripe: -1/2 to 1/2. */
 static double from_stripe(double middle, const double *x) {
   const double s = x[0] - x[1] - middle;
   return s - floor(s + 0.5);
@@ -105,17 +107,18 @@ static double stripe(void *context, const double x[3]) {
   return 0.5 * kWidth - fabs(from_stripe(*(const double *)context, x));
 }
 
-/* Force of the stiff stripes such that that of the soft ones is -1. */
+/* Return the force of the stiff stripes such that that of the soft ones is -1.
+ */
 static double stiff_force(void) { return (1 - kWidth) / kWidth; }
 
-/* Velocity up to a constant; 0 at the interface. */
+/* Return the velocity up to a constant; 0 at the interface. */
 static double stripe_velocity(double middle, const double *x) {
   const double d = fabs(from_stripe(middle, x)), half = 0.5 * kWidth;
   if (d < half) return stiff_force() * (half * half - d * d) / (4 * kStiff);
   return ((0.5 - d) * (0.5 - d) - (0.5 - half) * (0.5 - half)) / (4 * kSoft);
 }
 
-/* Face viscosity as in a step, from the fractions of the leaves. */
+/* Set the face viscosity as in a step, from the fractions of the leaves. */
 static void stripe_viscosity(struct bench *b, double middle, struct field *c,
                              double *eta_f) {
   static const char *const names[] = {"normal_x", "normal_y", "normal_z"};
@@ -135,8 +138,8 @@ static void stripe_viscosity(struct bench *b, double middle, struct field *c,
                        p->v, b->closed, shear_f->v, work, eta_f);
 }
 
-/* Forces on the leaves over dt and the velocity they drive; false if the
- * solve does not converge. */
+/* Apply forces on the leaves over dt and find the velocity they drive; returns
+ * false if the solve does not converge. */
 static bool drive_stripes(struct bench *b, const double *c, const double *eta_f,
                           double dt, struct field *const u[DIM]) {
   const struct mesh *mesh = b->mesh;
@@ -191,7 +194,7 @@ static struct norms stripe_errors(enum grid_kind grid, int level,
   return norms;
 }
 
-/* The larger one; NAN if one is. */
+/* Return the larger one; NAN if one is. */
 static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
 
 static void report_stripes(struct report *report, const char *name,

@@ -50,7 +50,8 @@ struct track {
   double time, centre[2];
 };
 
-/* Centre of volume, found from the last one, as the box is periodic. */
+/* Find the centre of volume, found from the last one, as the box is periodic.
+ */
 static void follow(const struct two_phase *sim, struct track *track) {
   double shift[2] = {0}, volume = integral(sim->grid.mesh, sim->c->v);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
@@ -64,7 +65,7 @@ static void follow(const struct two_phase *sim, struct track *track) {
   track->time = sim->model.time - 0.5 * sim->model.dt;
 }
 
-/* Mean velocity of the grains along x. */
+/* Return the mean velocity of the grains along x. */
 static double mean_speed(const struct two_phase *sim) {
   double sum = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
@@ -73,7 +74,7 @@ static double mean_speed(const struct two_phase *sim) {
   return sum / integral(sim->grid.mesh, sim->c->v);
 }
 
-/* Level set of the square at *context, periodic. */
+/* Return the level set of the square at *context, periodic. */
 static double wrapped_square(void *context, const double x[3]) {
   struct body body = *(const struct body *)context;
   double y[3] = {0};
@@ -83,7 +84,7 @@ static double wrapped_square(void *context, const double x[3]) {
   return cube(&body, y);
 }
 
-/* Part of the square's area that is not where it should be. */
+/* Return the part of the square's area that is not where it should be. */
 static double shape_error(struct two_phase *sim, const struct track *to) {
   struct body body = start;
   double *error = MEM_NEW(double, sim->grid.mesh->nleaves);

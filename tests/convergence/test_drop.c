@@ -26,7 +26,8 @@ struct drop {
   bool good;
 };
 
-/* Distance of the last mixed leaf of the floor behind the front, in leaves. */
+/* Return the distance of the last mixed leaf of the floor behind the front, in
+ * leaves. */
 static double mixed_behind_front(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double front = 0, first = HUGE_VAL, h = HUGE_VAL;

@@ -26,7 +26,7 @@ static const char kBeads[] = "examples/reference/discrete_case2.csv";
 static const char kDiscs[] = "examples/reference/contact_dynamics_a6.26.csv";
 static const double kLength = 0.056, kHeight = 0.1344, kGravity = 9.81;
 
-/* At the times of kBeads. */
+/* Report outlines at the times of kBeads. */
 static void report_bead_outlines(struct report *report, int level) {
   static const double time[] = {0.5, 1, 2, 3}, bar = 0.055;
   struct example example = example_new("lee_huang_column", "level=%d", level);
@@ -46,7 +46,7 @@ static void report_bead_outlines(struct report *report, int level) {
   example_destroy(&example);
 }
 
-/* At the times of kDiscs, in sqrt(H0/g), and their mean. */
+/* Report outlines at the times of kDiscs, in sqrt(H0/g), and their mean. */
 static void report_disc_outlines(struct report *report, int level) {
   static const double time[] = {0.66, 0.95, 1.24, 1.52, 2.28}, aspect = 6.26;
   struct example example = example_new("column", "level=%d", level);
@@ -69,9 +69,10 @@ static void report_disc_outlines(struct report *report, int level) {
   example_destroy(&example);
 }
 
-/* Steady friction of the closure is between eta_S = 0.42 and mu_tran = 0.539:
- * its run-out must lie between those of constant friction of these two values,
- * and the latter is the least that any such closure can have. */
+/* Report run-outs between limits. Steady friction of the closure is between
+ * eta_S = 0.42 and mu_tran = 0.539: its run-out must lie between those of
+ * constant friction of these two values, and the latter is the least that any
+ * such closure can have. */
 static void report_friction_limits(struct report *report, double runout) {
   static const double friction[] = {0.42, 0.539};
   double run[2], high[2];
@@ -85,8 +86,8 @@ static void report_friction_limits(struct report *report, double runout) {
                  8, 100 * kLength * (run[1] - runout), 0);
 }
 
-/* Table II: the run-out falls with eta_S by 22 % of its base value and rises
- * with e_eff by 5 %; the height the other way round. */
+/* Report table II: the run-out falls with eta_S by 22 % of its base value and
+ * rises with e_eff by 5 %; the height the other way round. */
 static void report_glass_beads(struct report *report) {
   static const double eta_S[] = {0.30, 0.42, 0.51}, e_eff[] = {0.46, 0.58, 0.7};
   const double length = kLength, stop = 7 * sqrt(kHeight / kGravity);

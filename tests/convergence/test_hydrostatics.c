@@ -23,13 +23,14 @@ static double inside(void *context, const double x[3]) {
   return down[0] * (x[0] - 0.5) + down[1] * (x[1] - kDepth);
 }
 
-/* Finest in [0.3, 0.6] x [0, 1]: the surface of any bed passes in and out. */
+/* Ask for the finest level in [0.3, 0.6] x [0, 1]: the surface of any bed
+ * passes in and out. */
 static double strip(void *context, const double x[3]) {
   const int level = *(const int *)context;
   return x[0] > 0.3 && x[0] < 0.6 ? level : level - 1;
 }
 
-/* Largest |u| in the first half of the steps and in the second. */
+/* Measure the largest |u| in the first half of the steps and in the second. */
 static void rest(int level, bool adapted, struct bed *bed, double most[2]) {
   struct params params = box_params(level);
   params.shape = (struct function){inside, bed};
@@ -54,8 +55,9 @@ static void rest(int level, bool adapted, struct bed *bed, double most[2]) {
   if (!good) most[0] = most[1] = NAN;
 }
 
-/* First order in h, or at round-off; and no growth: round-off wanders by a
- * factor of two, what grows from step to step gains more. */
+/* Report the speed of a bed: first order in h, or at round-off; and no growth:
+ * round-off wanders by a factor of two, what grows from step to step gains
+ * more. */
 static void run_bed(struct report *report, const char *grid, bool adapted,
                     double slope, double bar) {
   struct bed bed = {{slope / hypot(1, slope), -1 / hypot(1, slope)}};

@@ -63,8 +63,8 @@ static void flow_end(struct flow *s) {
   bench_destroy(s->bench);
 }
 
-/* u from the balance of forces over a step so long that only the mean feels
- * inertia. False if the solve does not converge. */
+/* Find u from the balance of forces over a step so long that only the mean
+ * feels inertia. False if the solve does not converge. */
 static bool balance_forces(struct flow *s) {
   const struct mesh *mesh = s->bench->mesh;
   const double h = ldexp(1, -mesh->level_finest);
@@ -85,7 +85,7 @@ static bool balance_forces(struct flow *s) {
              .status == SOLVE_CONVERGED;
 }
 
-/* Root of the mean square of what a projection changes at faces. */
+/* Return the root of the mean square of what a projection changes at faces. */
 static double compression(struct flow *s) {
   struct bench *b = s->bench;
   const struct mesh *mesh = b->mesh;

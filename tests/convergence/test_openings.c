@@ -30,7 +30,7 @@ static const char kJet[] =
     "  adapt = { { 'interface', width = 3 }, { 'inside' } },\n"
     "  output = { stop = 2 } }\n";
 
-/* Largest relative error of the volume in the steps to t = 2. */
+/* Return the largest relative error of the volume in the steps to t = 2. */
 static double jet_error(double width, int level) {
   char words[2][32], *override[] = {words[0], words[1]};
   snprintf(words[0], sizeof words[0], "W=%.17g", width);
@@ -49,7 +49,7 @@ static double jet_error(double width, int level) {
   return most;
 }
 
-/* Minus the slope of V(t), 2 <= t <= 4, of half a silo. */
+/* Return minus the slope of V(t), 2 <= t <= 4, of half a silo. */
 static double silo_rate(const char *width, const char *inside) {
   enum { MOST = 4096 };
   static double time[MOST], volume[MOST];

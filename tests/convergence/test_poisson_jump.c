@@ -12,7 +12,8 @@
 
 enum { FIRST = 5, UNIFORM = 6, ADAPTED = 4, MOST = 60, SPREAD = 2 };
 
-/* alpha across the circle; `inside` of it is 1 or 1000 times the outside. */
+/* Return alpha across the circle; `inside` of it is 1 or 1000 times the
+ * outside. */
 static double jump(const void *inside_is_heavy, const double *x) {
   const double r = hypot(x[0] - 0.5, x[1] - 0.5);
   return (r < 0.25) == *(const bool *)inside_is_heavy ? 1 : 1000;

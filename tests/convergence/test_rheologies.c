@@ -21,7 +21,7 @@ static double ratio_of(double a, double b) { return a / b - 1; }
 /* Of examples/rheologies.lua at level 7. */
 static const double kCell = 8. / 128, kGrain = 0.0219;
 
-/* Largest rise of an outline on the way out: 0 for a heap. */
+/* Return the largest rise of an outline on the way out: 0 for a heap. */
 static double largest_rise(const struct diagnostics *d) {
   double lowest = HUGE_VAL, rise = 0;
   for (int k = 0; k < d->outline.n[0]; k++) {
@@ -31,14 +31,14 @@ static double largest_rise(const struct diagnostics *d) {
   return rise;
 }
 
-/* Height of an outline at a distance behind its front. */
+/* Return the height of an outline at a distance behind its front. */
 static double height_behind_front(const struct diagnostics *d,
                                   double distance) {
   const int k = (int)((d->front - distance) / d->outline.spacing);
   return d->outline.height[k];
 }
 
-/* Mean distance of two outlines over the longer one. */
+/* Return the mean distance of two outlines over the longer one. */
 static double outline_distance(const struct diagnostics *a,
                                const struct diagnostics *b) {
   double apart = 0;
@@ -47,12 +47,12 @@ static double outline_distance(const struct diagnostics *a,
   return apart * a->outline.spacing / fmax(a->front, b->front);
 }
 
-/* "Never stops": a thin layer of fluid spreads as t^n, n = 1/5 if its viscosity
- * is constant, 2/7 if it is Bagnold's (h L = const, dL/dt ~ L^-5/2), and faster
- * while it is thick; of the three cells that the slower one moves, a front that
- * takes cell after cell is known to a third of one. "Comes to rest": moves by
- * less than a cell. Both from 6 to 8 sqrt(H0/g), when nothing that can stop has
- * not. */
+/* Report "never stops": a thin layer of fluid spreads as t^n, n = 1/5 if its
+ * viscosity is constant, 2/7 if it is Bagnold's (h L = const, dL/dt ~ L^-5/2),
+ * and faster while it is thick; of the three cells that the slower one moves, a
+ * front that takes cell after cell is known to a third of one. "Comes to rest":
+ * moves by less than a cell. Both from 6 to 8 sqrt(H0/g), when nothing that can
+ * stop has not. */
 static void report_spreading(struct report *report, const char *law,
                              const struct diagnostics d[2]) {
   if (strcmp(law, "newtonian") == 0 || strcmp(law, "bagnold") == 0) {
@@ -65,12 +65,12 @@ static void report_spreading(struct report *report, const char *law,
   }
 }
 
-/* "A solid-like corner": at 1 sqrt(H0/g) the outline of bingham rises outward
- * by more than a cell, those of grains by less than a quarter, as an outline is
- * second-order. "A rounded front, very different from the sharp angle": at
- * rest, at x = L0/4 behind it, bingham is as high as its yield stress can hold,
- * sqrt(2 tau_y x/(rho g)), within a fifth, and grains are not steeper than
- * their largest friction, mu_s + delta_mu = 0.6. */
+/* Report "a solid-like corner": at 1 sqrt(H0/g) the outline of bingham rises
+ * outward by more than a cell, those of grains by less than a quarter, as an
+ * outline is second-order. "A rounded front, very different from the sharp
+ * angle": at rest, at x = L0/4 behind it, bingham is as high as its yield
+ * stress can hold, sqrt(2 tau_y x/(rho g)), within a fifth, and grains are not
+ * steeper than their largest friction, mu_s + delta_mu = 0.6. */
 static void report_shape(struct report *report, const char *law,
                          const struct diagnostics *early,
                          const struct diagnostics *late) {
@@ -105,8 +105,9 @@ static void report_laws(struct report *report) {
   }
 }
 
-/* "Good agreement until 1.5 sqrt(H0/g), then it degrades": outlines of grains
- * are known to a diameter (the best fit of the paper misses them by 1.36). */
+/* Report "good agreement until 1.5 sqrt(H0/g), then it degrades": outlines of
+ * grains are known to a diameter (the best fit of the paper misses them by
+ * 1.36). */
 static void report_constant_friction(struct report *report) {
   static const double time[] = {1, 1.5, 4};
   struct example example[2] = {example_new("rheologies", "law=mu_i"),
@@ -130,7 +131,7 @@ static void report_constant_friction(struct report *report) {
   for (int i = 0; i < 2; i++) example_destroy(&example[i]);
 }
 
-/* Slope of ln y over ln x by least squares. */
+/* Return the slope of ln y over ln x by least squares. */
 static double exponent(int n, const double *x, const double *y) {
   double mean[2] = {0}, sum[2] = {0};
   for (int k = 0; k < n; k++)
@@ -143,9 +144,10 @@ static double exponent(int n, const double *x, const double *y) {
   return sum[0] / sum[1];
 }
 
-/* The paper lets grains stick to the floor but for a strip of a few d ahead of
- * the front, on which they and the air slip; our floor has a slip length of as
- * much. Without any the exponent is -1.07, -1.00, -0.97 at levels 7, 8, 9. */
+/* Report sensitivities. The paper lets grains stick to the floor but for a
+ * strip of a few d ahead of the front, on which they and the air slip; our
+ * floor has a slip length of as much. Without any the exponent is -1.07, -1.00,
+ * -0.97 at levels 7, 8, 9. */
 static void report_sensitivity(struct report *report) {
   static const double mu_s[] = {0.32, 0.42, 0.52, 0.62};
   static const double delta_mu[] = {0.18, 0.28, 0.38, 0.48};
@@ -179,7 +181,8 @@ static void report_sensitivity(struct report *report) {
   }
 }
 
-/* Of Gerris with mu(I), eq. 3.3: run-out = 2.2 a, a fit over a < 7. */
+/* Report run-outs against those of Gerris with mu(I), eq. 3.3: run-out = 2.2 a,
+ * a fit over a < 7. */
 static void report_aspect_ratios(struct report *report) {
   static const double a[] = {1.42, 2.4, 4};
   double run[3], high[3];
@@ -192,7 +195,8 @@ static void report_aspect_ratios(struct report *report) {
   }
 }
 
-/* Part of the grains that is in cells, not mostly gas, faster than a speed. */
+/* Return the part of the grains that is in cells, not mostly gas, faster than a
+ * speed. */
 static double faster_part(const struct two_phase *sim, double speed) {
   const struct mesh *mesh = sim->grid.mesh;
   double sum[2] = {0};
@@ -205,10 +209,10 @@ static double faster_part(const struct two_phase *sim, double speed) {
   return sum[0] / sum[1];
 }
 
-/* Speed at the surface of a layer as steep and as thick as the front is three
- * cells behind its end, by Bagnold's profile (bagnold.h) with the numbers of
- * examples/column.lua; 0 if mu_s holds it. The front is where the outline comes
- * down to half a cell. */
+/* Return the speed at the surface of a layer as steep and as thick as the front
+ * is three cells behind its end, by Bagnold's profile (bagnold.h) with the
+ * numbers of examples/column.lua; 0 if mu_s holds it. The front is where the
+ * outline comes down to half a cell. */
 static double tip_speed(const struct diagnostics *d) {
   static const double mu_s = 0.32, delta_mu = 0.28, I0 = 0.4;
   const double cell = d->outline.spacing;
@@ -252,14 +256,15 @@ static struct creep creep_of(int level, double eta_max, double bar) {
   return creep;
 }
 
-/* What is faster than the bar is the cell at the tip of the front, or two,
- * whatever eta_max. There the law itself lets grains flow: where the front is
- * steeper than mu_s by e over a thickness h, they slide like a layer on that
- * slope, at u = 2/3 I/d sqrt(g) h^(3/2), I = I0 e/(delta_mu - e), and take the
- * excess away in the time l h/(u h), l = h/mu_s. At constant e this grows as
- * h^(-1/2): the thinner the tip that a grid can tell, the slower it comes to
- * rest. (Level 9: h = 1.5 cells of L0/64, e = 0.06, u up to 0.012; seen 1.2e-3
- * to 5e-3.) So the fastest cell may do what the tip may, and the bar on top. */
+/* Report creep. Faster than the bar is only the cell at the tip of the front,
+ * or two, whatever eta_max. There the law itself lets grains flow: where the
+ * front is steeper than mu_s by e over a thickness h, they slide like a layer
+ * on that slope, at u = 2/3 I/d sqrt(g) h^(3/2), I = I0 e/(delta_mu - e), and
+ * take the excess away in the time l h/(u h), l = h/mu_s. At constant e this
+ * grows as h^(-1/2): the thinner the tip that a grid can tell, the slower it
+ * comes to rest. (Level 9: h = 1.5 cells of L0/64, e = 0.06, u up to 0.012;
+ * seen 1.2e-3 to 5e-3.) So the fastest cell may do what the tip may, and the
+ * bar on top. */
 static void report_creep(struct report *report) {
   static const double eta_max[] = {423, 1e4}, bar[] = {5e-3, 1e-3};
   static const char *const name[] = {"eta_max 250 H^1.5", "eta_max 1e4"};

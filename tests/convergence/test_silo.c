@@ -42,7 +42,7 @@ struct window {
 static const struct window kSteady = {"t 2 to 4", 2, 4};
 static const struct window kEarly = {"start", 0.5, 3};
 
-/* Width of the outlet, in whole faces. */
+/* Return the width of the outlet, in whole faces. */
 static double width_of(int k) { return 2 * (4 + 2 * k) * 5.0 / 128; }
 
 /* V(t) of a run, in the whole silo. */
@@ -56,8 +56,8 @@ struct discharge {
   int iterations[2]; /* the most of pressure and viscosity after t = 0.1 */
 };
 
-/* Outward flux through the floor with which c is moved in the next step, and
- * what is at the outlet. */
+/* Return the outward flux through the floor with which c is moved in the next
+ * step, and the part of it at the outlet. */
 static double outlet_flux(struct two_phase *sim, struct discharge *out) {
   const struct mesh *mesh = sim->grid.mesh;
   double *u_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__), sum = 0;
@@ -89,7 +89,8 @@ static void record(struct two_phase *sim, double parts, struct discharge *out) {
   }
 }
 
-/* The silo with these overrides to time `stop`. parts: 2 for half a silo. */
+/* Run the silo with these overrides to time `stop`. parts: 2 for half a silo.
+ */
 static void run_silo(const char *overrides, double parts, double stop,
                      struct discharge *out) {
   struct example example = example_new("silo", "%s", overrides);
@@ -134,7 +135,8 @@ static double rate_in(const struct discharge *run,
   return rate_between(run, window->begin, window->end);
 }
 
-/* Largest departure from its mean of the rate over half a unit of time. */
+/* Return the largest departure from its mean of the rate over half a unit of
+ * time. */
 static double drift_in(const struct discharge *run,
                        const struct window *window) {
   const double mean = rate_in(run, window);
@@ -167,7 +169,7 @@ static struct law fit_law(int n, const double width[], const double rate[]) {
   return law;
 }
 
-/* All six widths on level 7 and the law through them. */
+/* Report all six widths on level 7 and the law through them. */
 static void report_law(struct report *report,
                        const struct discharge run[WIDTHS]) {
   const char *name = kSteady.name;
@@ -201,7 +203,7 @@ static double start_law(const struct discharge *run, struct discharge *law) {
   return tau;
 }
 
-/* The six widths on level 7 as they start. */
+/* Report the six widths on level 7 as they start. */
 static void report_start(struct report *report,
                          const struct discharge run[WIDTHS]) {
   static struct discharge law;
@@ -234,7 +236,7 @@ static void run_width(int k, int level, struct discharge *out) {
   run_silo(overrides, 2, kSteady.end, out);
 }
 
-/* Three widths on a level: their rates, and the law through them. */
+/* Report three widths on a level: their rates, and the law through them. */
 static struct law report_few(struct report *report, int level,
                              const struct discharge run[FEW]) {
   double width[FEW], rate[FEW];
@@ -248,7 +250,8 @@ static struct law report_few(struct report *report, int level,
   return fit_law(FEW, width, rate);
 }
 
-/* What flows through the outlet is what is lost, and it is grains alone. */
+/* Report the outlet: the grains that flow through are those that are lost, and
+ * no gas flows. */
 static void report_outlet(struct report *report,
                           const struct discharge run[WIDTHS]) {
   double unaccounted = 0, least = 1, slowest = HUGE_VAL;
@@ -264,7 +267,7 @@ static void report_outlet(struct report *report,
   report_at_least(report, "outlet", "least outward speed", 7, slowest, 0);
 }
 
-/* A rate that must not depend on something, for the third width. */
+/* Report a rate that must not depend on something, for the third width. */
 static void report_same(struct report *report, const char *what, int level,
                         double change, double bar) {
   report_at_most(report, "D = 0.625", what, level, fabs(change), bar);

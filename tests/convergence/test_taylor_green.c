@@ -28,7 +28,8 @@ static double vortices(void *context, const double x[3]) {
                 : -cos(kWave * x[0]) * sin(kWave * x[1]);
 }
 
-/* Vortices in a mean flow, crossed by shear waves along both axes. */
+/* Return the velocity of vortices in a mean flow, crossed by shear waves along
+ * both axes. */
 static double crossed(void *context, const double x[3]) {
   const int d = *(const int *)context;
   return 0.3 * (d ? -1 : 1) + 0.5 * vortices(context, x) +
@@ -46,14 +47,14 @@ static struct params flow(int level, double viscosity,
   return params;
 }
 
-/* Finest in [0.2, 0.7] x [0.35, 0.8]. */
+/* Ask for the finest level in [0.2, 0.7] x [0.35, 0.8]. */
 static double rectangle(void *context, const double x[3]) {
   const int level = *(const int *)context;
   const bool inside = x[0] > 0.2 && x[0] < 0.7 && x[1] > 0.35 && x[1] < 0.8;
   return inside ? level : level - 1;
 }
 
-/* Error of u at the end, with steps of at most 0.4 h. */
+/* Return the error of u at the end, with steps of at most 0.4 h. */
 static double space_error(int level, bool adapted) {
   struct params params = flow(level, kThin, vortices);
   if (adapted) {
@@ -81,8 +82,8 @@ static double space_error(int level, bool adapted) {
   return good ? l2 : NAN;
 }
 
-/* u of the crossed flow at `time` after equal steps, in Morton order, for the
- * caller to free; NULL if a step fails or is shorter than asked for. */
+/* Return u of the crossed flow at `time` after equal steps, in Morton order,
+ * for the caller to free; NULL if a step fails or is shorter than asked for. */
 static double *crossed_run(int level, double viscosity, double time,
                            int steps) {
   struct params params = flow(level, viscosity, crossed);
@@ -101,8 +102,8 @@ static double *crossed_run(int level, double viscosity, double time,
   return u;
 }
 
-/* Root mean square of the difference, `fine` having 2^(2 finer) cells where
- * u has one: cells are in Morton order. */
+/* Return the root mean square of the difference, `fine` having 2^(2 finer)
+ * cells where u has one: cells are in Morton order. */
 static double difference(int level, const double *u, int finer,
                          const double *fine) {
   const size_t n = (size_t)1 << (2 * level), m = (size_t)1 << (2 * finer);
@@ -116,7 +117,7 @@ static double difference(int level, const double *u, int finer,
   return sqrt(sum / (double)n);
 }
 
-/* `level` of the rows: log2 of the number of steps. */
+/* Report orders in time; `level` of the rows: log2 of the number of steps. */
 static void time_order(struct report *report, const char *grid,
                        double viscosity, double order) {
   enum { LEVEL = 6, N = 4, FIRST = 5 };
@@ -131,7 +132,7 @@ static void time_order(struct report *report, const char *grid,
   report_errors(report, grid, "L2 of u by dt", FIRST, N, error, NULL, order);
 }
 
-/* dt = h / 4: each grid against the next. */
+/* Report orders with dt = h / 4: each grid against the next. */
 static void joint_order(struct report *report) {
   enum { N = 4, FIRST = 4 };
   const double time = 0.25;

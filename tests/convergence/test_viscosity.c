@@ -87,7 +87,7 @@ static void system_end(struct system *s) {
   forest_destroy(s->forest);
 }
 
-/* L2 of the error of the velocity vector, and its largest component. */
+/* Measure L2 of the error of the velocity vector, and its largest component. */
 static struct norms solve(const void *context, enum grid_kind grid, int level) {
   const struct problem *problem = context;
   struct system s = {0};

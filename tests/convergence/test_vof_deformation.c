@@ -13,7 +13,8 @@
 static const double kPi = 3.14159265358979323846, kPeriod = 3;
 static struct body sphere = {{0.35, 0.35, 0.35}, 0.15};
 
-/* The mean of sin(2 pi x) over h is sin(pi h) / (pi h) of that in the middle.
+/* Return the mean velocity of a face: that of sin(2 pi x) over h is sin(pi h) /
+ * (pi h) of that in the middle.
  */
 static double deformation(int d, const double x[3], double h) {
   const double mean = sin(kPi * h) / (kPi * h);

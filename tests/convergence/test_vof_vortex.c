@@ -20,7 +20,8 @@ static double stream(double x, double y) {
   return -1.5 * sin(kPi * (x + 0.5)) * sin(kPi * (y + 0.5)) / kPi;
 }
 
-/* u = -d psi/dy, v = d psi/dx, from psi at the ends of the face. */
+/* Return the mean of u = -d psi/dy or v = d psi/dx over a face, from psi at its
+ * ends. */
 static double vortex_mean(int d, const double x[3], double h) {
   double low[] = {x[0], x[1]}, high[] = {x[0], x[1]};
   low[1 - d] -= 0.5 * h, high[1 - d] += 0.5 * h;

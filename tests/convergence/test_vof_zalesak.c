@@ -8,14 +8,15 @@
 static const double kPi = 3.14159265358979323846;
 static const double kCentre[] = {0.5, 0.75, 0}, kRadius = 0.15;
 
-/* The slot ends 0.1 above the centre, on a circle's chord from below. */
+/* Return the level set of the disc; the slot ends 0.1 above the centre, on a
+ * circle's chord from below. */
 static double slotted_disc(void *context, const double x[3]) {
   static const double lo[] = {0.475, 0.5, 0}, hi[] = {0.525, 0.85, 0};
   (void)context;
   return fmin(level_set_ball(kCentre, kRadius, x), -level_set_box(lo, hi, x));
 }
 
-/* u = 2 pi (1/2 - y), v = 2 pi (x - 1/2), constant along faces. */
+/* Return u = 2 pi (1/2 - y), v = 2 pi (x - 1/2), constant along faces. */
 static double turning(int d, const double x[3], double h) {
   (void)h;
   return 2 * kPi * (d == 0 ? 0.5 - x[1] : x[0] - 0.5);

@@ -20,7 +20,7 @@ struct bench {
   bool closed[MESH_MAX_PATCHES], open[MESH_MAX_PATCHES];
 };
 
-/* On a forest, which it takes over. All sides closed. */
+/* Make a bench on a forest, which it takes over. All sides closed. */
 static inline struct bench *bench_on(struct forest *forest) {
   struct bench *b = MEM_NEW(struct bench, 1);
   b->forest = forest;
@@ -51,13 +51,14 @@ static inline struct field *bench_face(struct bench *b, const char *name) {
   return fields_add(&b->fields, b->mesh, name, "", "", FIELD_FACE, NULL);
 }
 
-/* One field per axis; `names` has at least DIM entries. */
+/* Add one field per axis; `names` has at least DIM entries. */
 static inline void bench_vector(struct bench *b, const char *const names[],
                                 struct field *out[DIM]) {
   for (int d = 0; d < DIM; d++) out[d] = bench_cell(b, names[d]);
 }
 
-/* Volume fractions of a level set, its surface found to 1/8 of a leaf. */
+/* Fill the volume fractions of a level set, its surface found to 1/8 of a leaf.
+ */
 static inline void fill_shape(const struct mesh *mesh, shape_level_set f,
                               void *context, double *v) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -73,10 +74,10 @@ static inline void face_centre(const struct mesh *mesh, int d, int32_t f,
   x[d] += 0.5 * mesh->h[i] * (mesh->face_leaf[f][0] == i ? 1 : -1);
 }
 
-/* Component d of a velocity field at x. */
+/* Return component d of a velocity field at x. */
 typedef double (*velocity_function)(int d, const double x[3]);
 
-/* Normal velocities at face centres, not solenoidal to round-off. */
+/* Fill normal velocities at face centres, not solenoidal to round-off. */
 static inline void fill_faces(const struct mesh *mesh, velocity_function u,
                               double *u_f) {
   for (int d = 0; d < DIM; d++) {
@@ -98,8 +99,8 @@ static inline void fill_cells(const struct mesh *mesh, velocity_function u,
   }
 }
 
-/* Boundary nodes of a filled field take the value of a function beyond the
- * wall instead of what a boundary condition says. */
+/* Give boundary nodes of a filled field the value of a function beyond the wall
+ * instead of what a boundary condition says. */
 typedef double (*scalar_function)(const void *context, const double x[3]);
 static inline void set_boundary_nodes(const struct mesh *mesh,
                                       scalar_function value,
@@ -115,8 +116,8 @@ static inline void set_boundary_nodes(const struct mesh *mesh,
   }
 }
 
-/* A solenoidal velocity without normal component on the unit box, largest
- * value 1: a vortex in two dimensions, three crossed ones in three. */
+/* Return a solenoidal velocity without normal component on the unit box,
+ * largest value 1: a vortex in two dimensions, three crossed ones in three. */
 static inline double vortex(int d, const double x[3]) {
   const double pi = acos(-1);
   double s[3], c[3];
@@ -129,7 +130,8 @@ static inline double vortex(int d, const double x[3]) {
   return k[d] * s[d] * s[d] * c[(d + 1) % 3] * c[(d + 2) % 3];
 }
 
-/* The bound of the scheme: 1/2 sum |u_f| A dt / V <= cfl in all leaves. */
+/* Return the bound of the scheme: 1/2 sum |u_f| A dt / V <= cfl in all leaves.
+ */
 static inline double courant_dt(const struct mesh *mesh, const double *u_f,
                                 double cfl) {
   double rate = 0;
@@ -141,7 +143,8 @@ static inline double courant_dt(const struct mesh *mesh, const double *u_f,
   return cfl / mesh_max(mesh, rate);
 }
 
-/* Integral over the box of weight(i) v; the sum itself adds no round-off. */
+/* Return the integral over the box of weight(i) v; the sum itself adds no
+ * round-off. */
 static inline double integral(const struct mesh *mesh, const double *v) {
   long double sum = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -150,9 +153,9 @@ static inline double integral(const struct mesh *mesh, const double *v) {
   return mesh_sum(mesh, (double)sum);
 }
 
-/* Every leaf of the unit box at the place of its centre in a lattice of
- * 2 2^level points along each axis, known to all ranks; 0 elsewhere. The
- * caller frees it. Collective. */
+/* Return an array with every leaf of the unit box at the place of its centre in
+ * a lattice of 2 2^level points along each axis, known to all ranks; 0
+ * elsewhere. The caller frees it. Collective. */
 static inline double *paint(const struct mesh *mesh, const double *v,
                             int level) {
   const int32_t n = 2 << level;

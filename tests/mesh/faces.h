@@ -7,7 +7,7 @@
 
 static const double kPi = 3.14159265358979323846;
 
-/* Direction of face f. */
+/* Return the direction of face f. */
 static inline int face_direction(const struct mesh *mesh, int32_t f) {
   int d = 0;
   while (f >= mesh->face_begin[d + 1]) d++;
@@ -22,8 +22,8 @@ static inline void face_centre(const struct mesh *mesh, int32_t f,
   x[d] += (mesh->face_node[f][0] == i ? 0.5 : -0.5) * mesh->h[i];
 }
 
-/* v [nfaces_all], the caller's, from a function of the face centre. Walls are
- * closed (0) if asked for. */
+/* Return v [nfaces_all], the caller's, from a function of the face centre.
+ * Walls are closed (0) if asked for. */
 static inline double *face_field(const struct mesh *mesh,
                                  double (*function)(const double *x),
                                  bool closed) {
@@ -37,7 +37,7 @@ static inline double *face_field(const struct mesh *mesh,
   return v;
 }
 
-/* Distance from the middle of the unit box. */
+/* Return the distance from the middle of the unit box. */
 static inline double from_middle(const double *x) {
   double r2 = 0;
   for (int d = 0; d < DIM; d++) r2 += (x[d] - 0.5) * (x[d] - 0.5);

@@ -12,8 +12,8 @@
 #include "talus/memory.h"
 #include "talus/mesh.h"
 
-/* Larger and smaller of two measured values, NaN if one of them is: fmax and
- * fmin would pass over it, and a bar could not fail. */
+/* Return the larger or the smaller of two measured values, NaN if one of them
+ * is: fmax and fmin would pass over it, and a bar could not fail. */
 static inline double larger(double a, double b) {
   return a > b || a != a ? a : b;
 }
@@ -44,7 +44,7 @@ static inline void grid_refine(struct forest *forest, const double *centre,
   }
 }
 
-/* Unit box of `trees` trees along x, uniform at level `base`, refined to
+/* Make a unit box of `trees` trees along x, uniform at level `base`, refined to
  * `level` in a ball. */
 static inline struct forest *grid_new(MPI_Comm comm, int trees, bool periodic,
                                       int base, int level) {
@@ -59,7 +59,7 @@ static inline struct forest *grid_new(MPI_Comm comm, int trees, bool periodic,
   return forest;
 }
 
-/* True on all ranks only if true on each. */
+/* Is a condition true on every rank? */
 static inline bool all_ranks(bool good) {
   int value = good;
   MPI_CHECK(

@@ -16,9 +16,10 @@ static inline struct rheology newtonian(double eta) {
   return r;
 }
 
-/* Unit box with closed slip sides on one level, gravity 1 downwards along the
- * last axis, grains of density 1 and viscosity 0.01 under a thousand times
- * lighter and a hundred times less viscous gas. No shape yet: all grains. */
+/* Describe a unit box with closed slip sides on one level, gravity 1 downwards
+ * along the last axis, grains of density 1 and viscosity 0.01 under a thousand
+ * times lighter and a hundred times less viscous gas. No shape yet: all grains.
+ */
 static inline struct params box_params(int level) {
   struct params p = {.dimension = DIM,
                      .size = 1,
@@ -42,7 +43,7 @@ static inline struct params box_params(int level) {
   return p;
 }
 
-/* Periodic, without gravity and gas. */
+/* Describe a periodic box without gravity and gas. */
 static inline struct params periodic_params(int level) {
   struct params p = box_params(level);
   p.gravity[DIM - 1] = 0;
@@ -61,12 +62,13 @@ static inline void params_follow_surface(struct params *p, int level_min,
       .type = CRITERION_INTERFACE, .level = p->level_max, .width = width};
 }
 
-/* Level set of the grains below the height *context along the last axis. */
+/* Return the level set of the grains below the height *context along the last
+ * axis. */
 static inline double below(void *context, const double x[3]) {
   return *(const double *)context - x[DIM - 1];
 }
 
-/* Grains in [0, 0.4]^DIM: a column about to fall. */
+/* Return the level set of grains in [0, 0.4]^DIM: a column about to fall. */
 static inline double column(void *context, const double x[3]) {
   (void)context;
   double outside = x[0];
@@ -92,8 +94,8 @@ static inline void sim_fill(struct two_phase *sim) {
   }
 }
 
-/* As two_phase_new, on a communicator, with face velocities the means of the
- * cells'. The grid follows the criteria. */
+/* Make a state as two_phase_new, on a communicator, with face velocities the
+ * means of the cells'. The grid follows the criteria. */
 static inline struct two_phase *sim_new(const struct params *params,
                                         MPI_Comm comm) {
   struct forest_layout layout;
@@ -121,7 +123,8 @@ static inline struct two_phase *sim_new(const struct params *params,
   return sim;
 }
 
-/* Largest |v| of a vector over the leaves, component by component. */
+/* Return the largest |v| of a vector over the leaves, component by component.
+ */
 static inline double largest(const struct two_phase *sim,
                              struct field *const v[DIM]) {
   double most = 0;
@@ -133,7 +136,7 @@ static inline double largest(const struct two_phase *sim,
   return mesh_max(sim->grid.mesh, most);
 }
 
-/* Momentum along d, or (d < 0) the mass. */
+/* Return the momentum along d, or (d < 0) the mass. */
 static inline double sim_momentum(const struct two_phase *sim, int d) {
   const double grains = sim->params->grains.density;
   const double gas = sim->params->gas.density;

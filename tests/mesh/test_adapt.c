@@ -107,7 +107,7 @@ START_TEST(a_function_of_position_sets_the_level) {
 }
 END_TEST
 
-/* A jump of velocity, which only the estimate can see. */
+/* Return a jump of velocity, which only the estimate can see. */
 static double jump_velocity(void *context, const double x[3]) {
   (void)context;
   return tanh((x[0] - 0.5) * 40);

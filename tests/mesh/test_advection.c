@@ -177,7 +177,7 @@ START_TEST(a_linear_velocity_is_advected_exactly_in_the_limit) {
 }
 END_TEST
 
-/* A periodic flow that turns in itself: u.grad u = -grad p. In three
+/* Return a periodic flow that turns in itself: u.grad u = -grad p. In three
  * dimensions all axes take part. */
 static double swirl(int d, const double x[3]) {
   const double k = 2 * acos(-1);
@@ -199,8 +199,8 @@ static double swirl_inertia(int d, const double x[3]) {
   return sum;
 }
 
-/* Largest and mean of the error of one step, by which acceleration should
- * have balanced advection, per dt. */
+/* Measure the largest and the mean of the error of one step, by which
+ * acceleration should have balanced advection, per dt. */
 static void steady_error(int base, int level, double *most, double *mean) {
   struct bench *b = bench_new(1, true, base, level);
   struct flow w = flow_new(b);
@@ -252,8 +252,8 @@ START_TEST(momentum_is_conserved_across_levels) {
 }
 END_TEST
 
-/* A block carried obliquely, its other components moving nothing: the limited
- * schemes leave it between 0 and 1, the plain one does not. */
+/* Return a block carried obliquely, its other components moving nothing: the
+ * limited schemes leave it between 0 and 1, the plain one does not. */
 static double block(int d, const double x[3]) {
   double outside = 0;
   for (int e = 0; e < DIM; e++) outside = larger(outside, fabs(x[e] - 0.5));

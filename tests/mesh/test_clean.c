@@ -6,8 +6,8 @@
 
 #include "grid.h"
 
-/* Random face velocities of size 1, closed or open at the top, become
- * solenoidal to round-off over h. */
+/* Check that random face velocities of size 1, closed or open at the top,
+ * become solenoidal to round-off over h. */
 static double cleaned(int trees, bool periodic, bool with_opening) {
   struct forest *forest = grid_new(MPI_COMM_WORLD, trees, periodic, 2, 5);
   struct mesh *mesh = mesh_new(forest);

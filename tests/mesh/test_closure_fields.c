@@ -20,8 +20,8 @@ static struct rheology lee_huang(void) {
   return r;
 }
 
-/* Grains in plane shear below gas that shears a hundred times faster, at one
- * pressure. */
+/* Set grains in plane shear below gas that shears a hundred times faster, at
+ * one pressure. */
 static void set_shear(struct two_phase *sim) {
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double z = sim->grid.mesh->x[i][DIM - 1];
@@ -30,7 +30,8 @@ static void set_shear(struct two_phase *sim) {
   }
 }
 
-/* Leaves next to a side see its condition, not the shear. */
+/* Is a leaf away from the sides, whose conditions are not those of the shear?
+ */
 static bool is_inside(const struct two_phase *sim, int32_t i) {
   bool inside = true;
   for (int d = 0; d < DIM; d++) {

@@ -119,8 +119,8 @@ END_TEST
 
 /* Outline */
 
-/* Volume fractions of the heap below h(x) = peak - slope |r|, r = x - x0 (3D:
- * the distance in the plane), by columns of samples. */
+/* Fill the volume fractions of the heap below h(x) = peak - slope |r|, r = x -
+ * x0 (3D: the distance in the plane), by columns of samples. */
 static void fill_heap(struct world *w, const double x0[2], double peak,
                       double slope) {
   enum { SAMPLES = 16 };
@@ -141,7 +141,7 @@ static void fill_heap(struct world *w, const double x0[2], double peak,
   }
 }
 
-/* Front of such a heap on leaves of 1/32, and its outline. */
+/* Return the front of such a heap on leaves of 1/32, and its outline. */
 static double front_of(const double x0[2], double peak, double slope,
                        int level) {
   struct world w = world_new(5, level);
@@ -247,7 +247,7 @@ END_TEST
 
 /* Sums */
 
-/* A simulation with no more than diagnostics read; the fields are zero. */
+/* Make a state with no more than diagnostics read; the fields are zero. */
 static struct two_phase *state_new(struct world *w, struct params *params) {
   static const char *const name[] = {"u_x", "u_y", "u_z"};
   struct two_phase *sim = MEM_NEW(struct two_phase, 1);
@@ -268,7 +268,7 @@ static void state_destroy(struct two_phase *sim) {
   mem_free(sim);
 }
 
-/* Fractions below the plane n.x = alpha of the unit box, exact. */
+/* Fill the fractions below the plane n.x = alpha of the unit box, exact. */
 static void fill_plane(struct world *w, const double n[DIM], double alpha,
                        double *c) {
   for (int32_t i = 0; i < w->mesh->nleaves; i++) {
@@ -342,13 +342,13 @@ static double everywhere(void *context, const double x[3]) {
   return 1;
 }
 
-/* x < 0.2 if *context, else x > 0.2. */
+/* Return x < 0.2 if *context, else x > 0.2. */
 static double half(void *context, const double x[3]) {
   return *(const double *)context > 0 ? 0.2 - x[0] : x[0] - 0.2;
 }
 
-/* Tracers of a collapsing column: all of the box, the grains, their left and
- * their right half. */
+/* Describe tracers of a collapsing column: all of the box, the grains, their
+ * left and their right half. */
 static struct params layered_params(void) {
   static double left[2] = {1, 0};
   struct params params = box_params(DIM == 2 ? 5 : 4);

@@ -8,7 +8,7 @@
 #include "talus/error.h"
 #include "talus/two_phase/start.h"
 
-/* Grains and a tracer in a corner of the box. */
+/* Describe grains and a tracer in a corner of the box. */
 static struct params state_params(void) {
   struct params p = box_params(3);
   p.shape = (struct function){.eval = column};

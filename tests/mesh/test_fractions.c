@@ -7,13 +7,13 @@
 
 Suite *fractions_suite(void);
 
-/* A velocity that has sources on the left and sinks on the right. */
+/* Return a velocity that has sources on the left and sinks on the right. */
 static double spread(int d, const double x[3]) {
   return d == 0 ? x[0] * (1 - x[0]) : 0;
 }
 
-/* c div u_f dt of the leaves that the grains fill by more than half, which
- * keep that c during the sweeps. */
+/* Return the sum of c div u_f dt of the leaves that the grains fill by more
+ * than half, which keep that c during the sweeps. */
 static double source(const struct two_phase *sim, double dt) {
   double sum = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {

@@ -34,7 +34,7 @@ static void remove_directory(void) {
   if (base_rank() == 0 && system(command) != 0) FATAL("cannot clean up");
 }
 
-/* Path of a file in the directory, valid until the next call. */
+/* Return the path of a file in the directory, valid until the next call. */
 static const char *path_of(const char *name) {
   static char path[256];
   snprintf(path, sizeof path, "%s/%s", directory, name);
@@ -71,7 +71,7 @@ START_TEST(rows_of_all_ranks_follow_each_other) {
 }
 END_TEST
 
-/* Rows of the number and place of each rank, made where *context says. */
+/* Fill rows of the number and place of each rank, made where *context says. */
 static void fill_rows(void *context, int64_t first, int64_t n, void *data) {
   int64_t *next = context;
   int64_t(*row)[3] = data;
@@ -157,7 +157,7 @@ END_TEST
 
 /* Checkpoints */
 
-/* Different everywhere, with all digits in use. */
+/* Return a number that is different everywhere, with all digits in use. */
 static double value_at(const double x[DIM], int which) {
   double v = which;
   for (int d = 0; d < DIM; d++) v += sin((37 + 3 * d + which) * x[d]);
@@ -174,7 +174,8 @@ static void add_fields(struct fields *fields, const struct mesh *mesh) {
   fields_add(fields, mesh, "scratch", "1", "not kept", FIELD_CELL, NULL);
 }
 
-/* Centre of a face, from its owner, so that all ranks agree on every bit. */
+/* Give the centre of a face, from its owner, so that all ranks agree on every
+ * bit. */
 static void face_centre(const struct mesh *mesh, int32_t f, int d,
                         double x[DIM]) {
   int32_t owner = mesh->face_owner[f];
@@ -320,8 +321,8 @@ END_TEST
 
 /* Snapshots */
 
-/* Twice the area of the quads, or what the bottom faces of hexahedra span:
- * positive if the vertices go round as VTK wants them. */
+/* Return twice the area of the quads, or what the bottom faces of hexahedra
+ * span: positive if the vertices go round as VTK wants them. */
 static double quad_area(const double (*x)[DIM], const int64_t *cell) {
   double area = 0;
   for (int k = 0; k < 4; k++) {
@@ -456,7 +457,8 @@ static bool file_holds(const char *path, const char *text) {
   return strcmp(back, text) == 0;
 }
 
-/* Rows 0, 1, 2, 3 and a row the crash cut short; the mark is that of two. */
+/* Write rows 0, 1, 2, 3 and a row the crash cut short; the mark is that of two.
+ */
 static struct csv_mark write_table(void) {
   struct csv *csv = csv_open(directory, "a.csv", "t,v", NULL);
   struct csv_mark mark = {0, 0};

@@ -10,7 +10,8 @@ Suite *level_raster_suite(void);
 
 enum { COARSE = 2, FINE = DIM == 2 ? 7 : 5 };
 
-/* A point of the finest grid, between the centres of all coarser leaves. */
+/* Return a point of the finest grid, between the centres of all coarser leaves.
+ */
 static double spot(void *context, const double x[3]) {
   const double *depth = context;
   double away = 0;

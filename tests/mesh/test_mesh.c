@@ -15,7 +15,8 @@ static double linear(const double x[DIM]) {
   return v;
 }
 
-/* Largest error of the stencils of a linear field, boundary nodes aside. */
+/* Return the largest error of the stencils of a linear field, boundary nodes
+ * aside. */
 static double linear_error(const struct mesh *mesh) {
   double *v = MEM_NEW(double, mesh->ncells);
   struct bc bc[MESH_MAX_PATCHES] = {{0}};
@@ -136,8 +137,9 @@ static double *linear_velocity(const struct mesh *mesh) {
   return v;
 }
 
-/* Largest errors in leaf i of a linear velocity v: of the net along each axis,
- * of divergence and outflow, of the means over both sides, of the turnover. */
+/* Measure the largest errors in leaf i of a linear velocity v: of the net along
+ * each axis, of divergence and outflow, of the means over both sides, of the
+ * turnover. */
 static void leaf_errors(const struct mesh *mesh, const double *v, int32_t i,
                         double error[4]) {
   const double h = mesh->h[i], volume = pow(h, DIM);
@@ -175,7 +177,7 @@ START_TEST(a_linear_velocity_has_its_divergence) {
 }
 END_TEST
 
-/* Flux of v out of the box, and the area of its boundary. */
+/* Return the flux of v out of the box, and the area of its boundary. */
 static double boundary_flux(const struct mesh *mesh, const double *v,
                             double *area) {
   double flux = 0, sum = 0;

@@ -33,7 +33,7 @@ static struct rider rider_new(struct bench *b, double ratio) {
   return r;
 }
 
-/* One step of c and of the momentum near its surface. */
+/* Take one step of c and of the momentum near its surface. */
 static void rider_step(const struct bench *b, struct rider *r, int step,
                        double dt) {
   const struct mesh *mesh = b->mesh;
@@ -64,7 +64,7 @@ static double drift(int d, const double x[3]) {
   return kDrift[d];
 }
 
-/* Momentum along d and mass of the whole box. */
+/* Return the momentum along d and mass of the whole box. */
 static double momentum_of(const struct bench *b, const struct rider *r, int d) {
   long double sum = 0; /* adds no round-off of its own */
   for (int32_t i = 0; i < b->mesh->nleaves; i++) {
@@ -78,8 +78,8 @@ static double momentum_of(const struct bench *b, const struct rider *r, int d) {
 
 static struct body off_centre = {{0.45, 0.55, 0.5}, 0.3};
 
-/* Largest change of a uniform velocity, or of the momentum (relative), when a
- * ball of grains drifts obliquely through a periodic box. */
+/* Measure the largest change of a uniform velocity, or of the momentum
+ * (relative), when a ball of grains drifts obliquely through a periodic box. */
 static void carry_ball(double ratio, int base, double *change, double *lost) {
   struct bench *b = bench_new(1, true, base, 5);
   struct rider r = rider_new(b, ratio);
@@ -161,7 +161,7 @@ START_TEST(a_dense_square_moves_unchanged_through_light_gas) {
 }
 END_TEST
 
-/* Velocity of leaves that vary by a tenth along all axes. */
+/* Return the velocity of leaves that vary by a tenth along all axes. */
 static double uneven(int d, const double x[3]) {
   const double pi = acos(-1);
   double wave = 1;

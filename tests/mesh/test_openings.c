@@ -35,7 +35,7 @@ static int select_on_top(void *context, const double t[2]) {
   return select_patch(context, TOP, x);
 }
 
-/* A box of gas with an opening of one type in a top of another. */
+/* Describe a box of gas with an opening of one type in a top of another. */
 static struct params opening_params(struct opening *opening,
                                     enum boundary_type first,
                                     enum boundary_type second) {
@@ -73,7 +73,7 @@ static double area_of(const struct opening *opening) {
   return (opening->high - opening->low) * (DIM == 2 ? 1 : 0.51 - 0.2);
 }
 
-/* Flux through the top into the box, of c as well if it is given. */
+/* Return the flux through the top into the box, of c as well if it is given. */
 static double inflow_of(struct two_phase *sim, bool grains) {
   const struct mesh *mesh = sim->grid.mesh;
   double sum = 0;

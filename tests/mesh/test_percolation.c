@@ -17,7 +17,8 @@ static double hovering(void *context, const double x[3]) {
   return fmin(x[DIM - 1] - kGap, 0.5 + kGap - x[DIM - 1]);
 }
 
-/* A bed with a bubble of some leaves in it, off the lines of the grid. */
+/* Return the level set of a bed with a bubble of some leaves in it, off the
+ * lines of the grid. */
 static double bubble(void *context, const double x[3]) {
   (void)context;
   double r2 = 0;
@@ -25,13 +26,15 @@ static double bubble(void *context, const double x[3]) {
   return fmin(0.8 - x[DIM - 1], sqrt(r2) - 0.15);
 }
 
-/* Grains that hang from the lid, a tenth of a leaf below it. */
+/* Return the level set of grains that hang from the lid, a tenth of a leaf
+ * below it. */
 static double hanging(void *context, const double x[3]) {
   (void)context;
   return fmin(x[DIM - 1] - 0.5, 1 - kGap - x[DIM - 1]);
 }
 
-/* A slope that cuts leaves in all ways, without gas below it. */
+/* Return the level set of a slope that cuts leaves in all ways, without gas
+ * below it. */
 static double slope(void *context, const double x[3]) {
   (void)context;
   return 0.6 - 0.43 * x[0] - x[DIM - 1];

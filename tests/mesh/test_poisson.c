@@ -22,7 +22,7 @@ static double one(const double *x) {
   (void)x;
   return 1;
 }
-/* 1 : 1000 across a circle */
+/* Return densities 1 : 1000 across a circle. */
 static double heavy_inside(const double *x) {
   return from_middle(x) < 0.25 ? 1 : 1000;
 }
@@ -55,7 +55,8 @@ static void solve_end(struct solve *s) {
   mem_free(s->p);
 }
 
-/* prod_d cos(2 pi x_d) suits closed and periodic boxes, sin Dirichlet. */
+/* Return prod_d cos(2 pi x_d) for closed and periodic boxes, of sin for
+ * Dirichlet. */
 static double wave(const double *x, bool sine) {
   double v = 1;
   for (int d = 0; d < DIM; d++) {
@@ -64,7 +65,7 @@ static double wave(const double *x, bool sine) {
   return v;
 }
 
-/* Right-hand side of the wave, its mean over the leaves removed. */
+/* Set the right-hand side of the wave, its mean over the leaves removed. */
 static void set_wave(struct solve *s, bool sine, double scale) {
   const struct mesh *mesh = s->mesh;
   double sum = 0, volume = 0;
@@ -130,8 +131,8 @@ START_TEST(fluxes_add_up_to_nothing_in_a_closed_box) {
 }
 END_TEST
 
-/* Largest error of the wave, boundary by kind: 0 closed, 1 Dirichlet, 2
- * periodic. */
+/* Return the largest error of the wave, boundary by kind: 0 closed, 1
+ * Dirichlet, 2 periodic. */
 static double wave_error(int kind, int base, int level, bool *converged) {
   struct solve s = solve_new(
       grid_new(MPI_COMM_WORLD, 1, kind == 2, base, level), one, kind == 0);
@@ -170,7 +171,8 @@ START_TEST(smooth_solution_is_second_order) {
 }
 END_TEST
 
-/* Iterations for a right-hand side of size one, from zero to 1e-8. */
+/* Return the iterations for a right-hand side of size one, from zero to 1e-8.
+ */
 static int jump_iterations(int base, int level, bool inside) {
   struct solve s = solve_new(grid_new(MPI_COMM_WORLD, 1, false, base, level),
                              inside ? heavy_inside : heavy_outside, true);

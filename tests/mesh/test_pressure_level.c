@@ -25,8 +25,8 @@ static struct params still_params(bool closed) {
   return p;
 }
 
-/* Largest difference of p to the weight of what lies above, with p = level on
- * top; inside leaves that hold one phase. */
+/* Return the largest difference of p to the weight of what lies above, with p =
+ * level on top; inside leaves that hold one phase. */
 static double error_of_weight(const struct two_phase *sim, double level) {
   double most = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {

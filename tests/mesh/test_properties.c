@@ -214,7 +214,7 @@ static double plane_level_set(void *context, const double x[3]) {
   return sum;
 }
 
-/* Well away from walls, where the stencil bends the plane. */
+/* Is a leaf well away from walls, where the stencil bends the plane? */
 static bool is_inner(const double x[3], double h) {
   bool inner = true;
   for (int d = 0; d < DIM; d++)

@@ -21,8 +21,8 @@ static double linear(const double x[DIM]) {
 
 static struct body off_centre = {{0.45, 0.55, 0.5}, 0.3};
 
-/* A ball of grains, velocities that vary on the scale of the box, a linear
- * pressure and the vortex on faces. */
+/* Make a state of a ball of grains, velocities that vary on the scale of the
+ * box, a linear pressure and the vortex on faces. */
 static struct two_phase *state_new(const struct params *params, int base,
                                    int level) {
   struct two_phase *sim =

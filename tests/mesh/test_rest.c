@@ -7,7 +7,7 @@
 
 Suite *rest_suite(void);
 
-/* One leaf, of the last rank, has fraction c and speed u. */
+/* Give one leaf, of the last rank, fraction c and speed u. */
 static void set_one(struct two_phase *sim, double c, double u) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {

@@ -19,8 +19,8 @@ static const char TEXT[] =
     "  boundary = { left = 'slip', right = 'slip', bottom = 'no_slip',\n"
     "    top = 'outflow' }, output = { stop = 1 } }\n";
 
-/* Whether `key` is where ranks differ, when the last one has this height of the
- * grains and this override, and the others the usual ones. */
+/* Tell whether `key` is where ranks differ, when the last one has this height
+ * of the grains and this override, and the others the usual ones. */
 static bool differ_in(const char *key, const char *height,
                       const char *override) {
   const bool last = base_size() > 1 && base_rank() == base_size() - 1;

@@ -46,7 +46,7 @@ static void write_bytes(const unsigned char *data, size_t n) {
   MPI_CHECK(MPI_Barrier(MPI_COMM_WORLD));
 }
 
-/* A checkpoint with some leaves, a field and parameters. */
+/* Write a checkpoint with some leaves, a field and parameters. */
 static void write_checkpoint(void) {
   struct forest *forest = grid_new(MPI_COMM_WORLD, 2, false, 2, 4);
   struct mesh *mesh = mesh_new(forest);
@@ -97,8 +97,8 @@ static size_t random_below(size_t n) {
   return ((size_t)rand() * ((size_t)RAND_MAX + 1) + (size_t)rand()) % n;
 }
 
-/* Damages of the kinds that disks and users do: a bit, a page of zeros, a cut,
- * bytes of noise, more bytes at the end. */
+/* Damage a file as disks and users do: a bit, a page of zeros, a cut, bytes of
+ * noise, more bytes at the end. */
 static void damage(struct bytes *bytes, int kind) {
   const size_t place = random_below(bytes->n);
   size_t n = bytes->n - place;

@@ -26,7 +26,7 @@ static double start(void *context, const double x[3]) {
   return START;
 }
 
-/* F is `friction` times g sin(alpha). */
+/* Describe a plug; F is `friction` times g sin(alpha). */
 static struct params plug_params(double friction, bool moves) {
   struct params p = box_params(LEVEL);
   p.single_phase = true;
@@ -42,7 +42,7 @@ static struct params plug_params(double friction, bool moves) {
   return p;
 }
 
-/* Mean of u_x, and how far the leaves are from it. */
+/* Return the mean of u_x, and how far the leaves are from it. */
 static double plug_speed(const struct two_phase *sim, double *spread) {
   const double mean = integral(sim->grid.mesh, sim->u[0]->v);
   double most = 0;

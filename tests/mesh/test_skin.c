@@ -28,7 +28,7 @@ struct block {
   double *c, *u[DIM], *eta_f, *force[DIM], *shear_f;
 };
 
-/* u = A x in the grains. */
+/* Make a block with u = A x in the grains. */
 static struct block *block_new(int level, double height, double a[DIM][DIM]) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[] = {neumann, neumann, neumann};
@@ -72,7 +72,7 @@ static void block_destroy(struct block *b) {
   mem_free(b);
 }
 
-/* Largest force of viscosity. */
+/* Return the largest force of viscosity. */
 static double largest_force(struct block *b, const struct skin *skin) {
   double most = 0;
   viscous_force(b->mesh, b->eta_f, skin, b->u, b->force);
@@ -84,7 +84,7 @@ static double largest_force(struct block *b, const struct skin *skin) {
   return mesh_max(b->mesh, most);
 }
 
-/* Largest departure of the shear rate of the grains from a value. */
+/* Return the largest departure of the shear rate of the grains from a value. */
 static double shear_error(struct block *b, const struct skin *skin,
                           double exact) {
   double most = 0;

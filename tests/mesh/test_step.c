@@ -44,7 +44,8 @@ START_TEST(a_flat_bed_stays_still) {
 }
 END_TEST
 
-/* A bed of slope *context, gravity normal to it; a strip of finer leaves. */
+/* Return the level set of a bed of slope *context, gravity normal to it; a
+ * strip of finer leaves. */
 static double tilted(void *context, const double x[3]) {
   return 0.53 + *(const double *)context * (x[0] - 0.5) - x[DIM - 1];
 }
@@ -83,7 +84,7 @@ START_TEST(a_tilted_bed_stays_still_across_levels) {
 }
 END_TEST
 
-/* Grains in a block in the middle, [0.25, 0.75]^DIM. */
+/* Return the level set of grains in a block in the middle, [0.25, 0.75]^DIM. */
 static double block(void *context, const double x[3]) {
   double outside = 0;
   (void)context;
@@ -281,7 +282,7 @@ END_TEST
 
 enum look { AS_IT_IS, LOOKED_AT, PLANES_ANEW, FAILED_ONCE, NLOOKS };
 
-/* A step, and its repetitions, whose solves may do nothing. */
+/* Take a step, with its repetitions, whose solves may do nothing. */
 static void fail_a_step(struct two_phase *sim, struct params *params) {
   const int most = params->max_iterations;
   params->max_iterations = 0;
@@ -328,7 +329,7 @@ START_TEST(looks_planes_made_anew_and_failures_change_nothing) {
 }
 END_TEST
 
-/* A viscosity that is no number the first times that it is asked for. */
+/* Return a viscosity that is no number the first times that it is asked for. */
 static void spoiled_viscosity(void *context, double time, int32_t n,
                               const double *shear_rate, const double *pressure,
                               double *eta) {
@@ -368,7 +369,7 @@ START_TEST(failed_steps_are_repeated_with_a_quarter_of_dt) {
 }
 END_TEST
 
-/* It decays as exp(-2 nu k^2 t) and keeps its shape. */
+/* Measure the error against a decay as exp(-2 nu k^2 t) and keeps its shape. */
 static double decay_error(int level, double theta, double *shape) {
   struct params params = periodic_params(level);
   const double eta = 0.01, end = 0.4;
@@ -416,7 +417,8 @@ START_TEST(a_taylor_green_flow_decays_as_it_should) {
 }
 END_TEST
 
-/* A periodic box of one fluid with a mean flow, uneven and viscous. */
+/* Return the velocity of a periodic box of one fluid with a mean flow, uneven
+ * and viscous. */
 static double uneven(void *context, const double x[3]) {
   const int d = *(const int *)context;
   return 0.5 + taylor_green(context, x) + 0.3 * sin(kWave * (x[1 - d] + 0.1));
@@ -654,7 +656,8 @@ static struct rheology mu_i(double eta_max) {
   return r;
 }
 
-/* The surface crosses the grid, so some of its leaves are nearly empty. */
+/* Return the level set of a heap; its surface crosses the grid, so that some
+ * leaves are nearly empty. */
 static double gentle_heap(void *context, const double x[3]) {
   (void)context;
   return 0.6 - 0.25 * x[0] - x[DIM - 1];

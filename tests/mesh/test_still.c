@@ -27,7 +27,7 @@ static double height_below(void *context, const double x[3]) {
   return 0.5 + s->shift - s->tilt * (x[0] - 0.5) - x[DIM - 1];
 }
 
-/* The left half is fine. */
+/* Ask for fine leaves in the left half. */
 static double half(void *context, const double x[3]) {
   (void)context;
   return x[0] < 0.5 ? LEVEL : LEVEL - 1;

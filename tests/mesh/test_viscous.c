@@ -53,12 +53,12 @@ static double one(const double *x) {
   (void)x;
   return 1;
 }
-/* Rough, 1e-3 .. 1e3 */
+/* Return a rough coefficient, 1e-3 to 1e3. */
 static double rough(const double *x) {
   return pow(10, 3 * sin(1e4 * x[0] + 2e4 * x[1]));
 }
 
-/* u = A x. */
+/* Set u = A x. */
 static void set_linear(struct flow *s, double a[DIM][DIM]) {
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
@@ -69,8 +69,8 @@ static void set_linear(struct flow *s, double a[DIM][DIM]) {
   mesh_fill(s->mesh, DIM, s->u, s->bc, false);
 }
 
-/* Largest force more than 0.26 from the walls, two cells of level 3, where
- * no boundary node is read. */
+/* Return the largest force more than 0.26 from the walls, two cells of level 3,
+ * where no boundary node is read. */
 static double inner_force(struct flow *s) {
   const struct mesh *mesh = s->mesh;
   double most = 0;
@@ -186,8 +186,8 @@ START_TEST(force_on_waves_is_exact) {
 }
 END_TEST
 
-/* Periodic waves u_d = sin(theta + d), theta = 2 pi sum x, in a fluid of eta =
- * exp(2 cos(2 pi x_0)). */
+/* Return eta of the test with periodic waves u_d = sin(theta + d), theta = 2 pi
+ * sum x, in a fluid of eta = exp(2 cos(2 pi x_0)). */
 static double smooth_eta(const double *x) {
   return exp(2 * cos(2 * kPi * x[0]));
 }
@@ -248,8 +248,8 @@ static double disc(const double *x) {
   return from_middle(x) < 0.25 ? fmax(contrast, 1) : fmax(1 / contrast, 1);
 }
 
-/* Iterations from zero to 1e-8 times the first residual, with dt so that
- * rho h^2 / (eta_soft dt) = lambda. */
+/* Return the iterations from zero to 1e-8 times the first residual, with dt so
+ * that rho h^2 / (eta_soft dt) = lambda. */
 static int disc_iterations(int base, int level, double lambda) {
   struct flow *s = flow_new(grid_new(MPI_COMM_WORLD, 1, false, base, level),
                             disc, BC_DIRICHLET);
@@ -280,7 +280,7 @@ START_TEST(contrast_of_viscosity) {
 }
 END_TEST
 
-/* max |rhs - u + force| of a solve with dt = 1. */
+/* Return max |rhs - u + force| of a solve with dt = 1. */
 static double true_residual(struct flow *s) {
   double *force[DIM], most = 0;
   for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, s->mesh->nleaves);

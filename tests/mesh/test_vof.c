@@ -11,8 +11,8 @@ Suite *vof_suite(void);
 /* Its surface passes in and out of the finer leaves of grid_new. */
 static struct body off_centre = {{0.45, 0.55, 0.5}, 0.3};
 
-/* A ball in the cleaned vortex for 30 steps at the largest dt: what its
- * volume loses or gains. */
+/* Return what the volume of a ball loses or gains in the cleaned vortex, in 30
+ * steps at the largest dt. */
 static double volume_drift(struct bench *b) {
   struct transport t = transport_new(b);
   fill_shape(b->mesh, ball, &off_centre, t.c->v);
@@ -102,9 +102,9 @@ static double drift_velocity(int d, const double x[3]) {
   return kDrift[d];
 }
 
-/* Largest and mean error (per leaf of the surface) in the middle of the box
- * after four steps: the boundary, where the plane is bent, is felt two leaves
- * further in after each sweep. */
+/* Measure the largest and the mean error (per leaf of the surface) in the
+ * middle of the box after four steps: the boundary, where the plane is bent, is
+ * felt two leaves further in after each sweep. */
 static void translate_plane(struct bench *b, const double n[3], double *most,
                             double *mean) {
   enum { STEPS = 4 };
@@ -247,7 +247,7 @@ START_TEST(a_divided_side_passes_what_the_coarse_plane_holds) {
 }
 END_TEST
 
-/* Stretched by the vortex and brought back: what is left of the error. */
+/* Return the error of a ball that the vortex has stretched and brought back. */
 static double reversal_error(int level) {
   struct bench *b = bench_new(1, false, level, level);
   struct transport t = transport_new(b);

@@ -34,14 +34,14 @@ static inline void transport_sweep(const struct bench *b, struct transport *t,
   vof_update(b->mesh, d, dt, t->u_f->v, t->flux->v, t->frozen->v, t->c->v);
 }
 
-/* One step: a sweep per axis, from axis step % DIM on. */
+/* Take one step: a sweep per axis, from axis step % DIM on. */
 static inline void transport_step(const struct bench *b, struct transport *t,
                                   int step, double dt) {
   vof_freeze(b->mesh, t->c->v, t->frozen->v);
   for (int s = 0; s < DIM; s++) transport_sweep(b, t, (step + s) % DIM, dt);
 }
 
-/* How far the fractions leave [0, 1]. */
+/* Return how far the fractions leave [0, 1]. */
 static inline double transport_excess(const struct bench *b,
                                       const struct transport *t) {
   double most = 0;

@@ -5,9 +5,9 @@
 
 #include <math.h>
 
-/* Distance to the nearest face of the box lo[d] < x[d] < hi[d], d < DIM,
- * inside; minus the largest overshoot outside. Bounds may be infinite, but not
- * all of them. */
+/* Return the distance to the nearest face of the box lo[d] < x[d] < hi[d], d <
+ * DIM, inside; minus the largest overshoot outside. Bounds may be infinite, but
+ * not all of them. */
 static inline double level_set_box(const double lo[DIM], const double hi[DIM],
                                    const double x[DIM]) {
   double nearest = INFINITY;
@@ -17,7 +17,7 @@ static inline double level_set_box(const double lo[DIM], const double hi[DIM],
   return nearest;
 }
 
-/* Radius of a ball less the distance to its centre. */
+/* Return the radius of a ball less the distance to its centre. */
 static inline double level_set_ball(const double centre[DIM], double radius,
                                     const double x[DIM]) {
   double square = 0;

@@ -5,13 +5,14 @@
 
 #include <stdint.h>
 
-/* Uniform in [0, 1): Knuth's MMIX congruential generator. */
+/* Draw a number uniform in [0, 1): Knuth's MMIX congruential generator. */
 static inline double uniform(uint64_t *state) {
   *state = *state * 6364136223846793005u + 1442695040888963407u;
   return (double)(*state >> 11) / 9007199254740992.;
 }
 
-/* The largest value seen; NaN stays. A ck_assert per sample would be slow. */
+/* Raise `most` to the largest value seen; NaN stays. A ck_assert per sample
+ * would be slow. */
 static inline void raise_to(double *largest, double value) {
   if (*largest == *largest && !(value <= *largest)) *largest = value;
 }

@@ -77,7 +77,7 @@ START_TEST(the_tightest_group_counts) {
 }
 END_TEST
 
-/* Bytes of address space in use. */
+/* Return the bytes of address space in use. */
 static double space_used(void) {
   double pages = 0;
   FILE *f = fopen("/proc/self/statm", "r");

@@ -44,7 +44,7 @@ static struct case_file *load_with(const char *text, const char *override) {
   return case_load_text("dir/test.lua", text, 1, words);
 }
 
-/* What `print` writes about a case, in `text`. */
+/* Write what `print` says about a case into `text`. */
 static void printed(const struct case_file *file,
                     void (*print)(const struct case_file *, FILE *),
                     char text[TEXT_LENGTH]) {
@@ -412,7 +412,7 @@ END_TEST
 
 /* The sandbox */
 
-/* What comes of a piece of code: NULL or a message, copied. */
+/* Return the outcome of a piece of code: NULL or a message, copied. */
 static const char *outcome(const char *code) {
   static char message[2048];
   struct sandbox *sandbox = sandbox_new("x.lua", library_open);

@@ -10,7 +10,7 @@
 
 Suite *lee_huang_suite(void);
 
-/* Table I of [lee_huang_chiew_2015] with one key changed; no table. */
+/* Return table I of [lee_huang_chiew_2015] with one key changed; no table. */
 static struct rheology table_I(const char *key, double value) {
   struct rheology r;
   rheology_init(&r, rheology_find("lee_huang"));
@@ -170,7 +170,7 @@ static void tear_down(void) {
   ck_assert_int_eq(mem_live_blocks(), 0);
 }
 
-/* Shear rate at an inertial number. */
+/* Return the shear rate at an inertial number. */
 static double rate_of(const struct rheology *r, double I, double p) {
   return I * sqrt(p / r->param[LEE_HUANG_RHO_D]) / r->param[LEE_HUANG_D];
 }
@@ -190,7 +190,7 @@ static double output(const struct rheology *r, const char *name, double gamma,
   return out;
 }
 
-/* Largest relative error of mu and nu at I and K/p. */
+/* Return the largest relative error of mu and nu at I and K/p. */
 static double table_error(const struct rheology *r,
                           const struct lee_huang_marks *marks, double I,
                           double K_over_p) {

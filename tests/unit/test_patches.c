@@ -10,7 +10,7 @@
 
 Suite *patches_suite(void);
 
-/* A box of edge 4 with faces of 1/8, its top chosen by `top`. */
+/* Load a box of edge 4 with faces of 1/8, its top chosen by `top`. */
 static struct case_file *load(const char *top, const char *more) {
   char text[2048];
   snprintf(text, sizeof text,

@@ -10,7 +10,8 @@ Suite *plane_suite(void);
 
 enum { SAMPLES = 200000 };
 
-/* A normal with |n|_1 = 1, often with components that are 0, tiny or equal. */
+/* Draw a normal with |n|_1 = 1, often with components that are 0, tiny or
+ * equal. */
 static void random_normal(uint64_t *state, double n[DIM]) {
   static const double scale[] = {1., 1.,    1.,    1.,     1.,    1e-4,
                                  0., 1e-14, 1e-16, 1e-300, 5e-324};
@@ -26,7 +27,7 @@ static void random_normal(uint64_t *state, double n[DIM]) {
   for (int d = 0; d < DIM; d++) n[d] /= sum;
 }
 
-/* An alpha whose plane cuts the cell, often within 1e-15 of a corner. */
+/* Draw an alpha whose plane cuts the cell, often within 1e-15 of a corner. */
 static double random_alpha(uint64_t *state) {
   double a = 0.5 * uniform(state);
   if (uniform(state) < 0.3) a = 0.5 - exp(-35. * uniform(state));
@@ -48,7 +49,8 @@ START_TEST(plane_volume_of_cuts_done_by_hand) {
 }
 END_TEST
 
-/* Columns along the largest component, cut exactly; midpoints across. */
+/* Return the volume by columns along the largest component, cut exactly;
+ * midpoints across. */
 static double volume_by_columns(const double n[DIM], double alpha, int points) {
   int main_axis = 0;
   for (int d = 1; d < DIM; d++)
@@ -247,7 +249,8 @@ START_TEST(plane_centroid_lies_on_the_plane_and_in_the_cell) {
 }
 END_TEST
 
-/* Area of the interface between lo and hi on axis d, by a difference. */
+/* Return the area of the interface between lo and hi on axis d, by a
+ * difference. */
 static double area_in_slab(const double n[DIM], double alpha, int d, double lo,
                            double hi) {
   const double step = 1e-5;

@@ -10,7 +10,7 @@ Suite *plane_normal_suite(void);
 
 enum { SAMPLES = 200000, CENTRE = PLANE_STENCIL / 2 };
 
-/* Fractions of the stencil below the plane n . x = alpha. */
+/* Fill the fractions of the stencil below the plane n . x = alpha. */
 static void fill_stencil(const double n[DIM], double alpha,
                          double c[PLANE_STENCIL]) {
   for (int s = 0; s < PLANE_STENCIL; s++) {
@@ -33,7 +33,7 @@ START_TEST(plane_normal_is_exact_for_planes_along_the_axes) {
 }
 END_TEST
 
-/* Angle between two directions, in radian. */
+/* Return the angle between two directions, in radian. */
 static double angle_between(const double a[DIM], const double b[DIM]) {
   double aa = 0., bb = 0., square = 0.;
   for (int d = 0; d < DIM; d++) aa += a[d] * a[d], bb += b[d] * b[d];
@@ -50,8 +50,8 @@ static double sum_of_sizes(const double n[DIM]) {
   return sum;
 }
 
-/* A random plane through the cell. One in five is almost parallel to an axis:
- * a component down to 1e-12. */
+/* Draw a random plane through the cell. One in five is almost parallel to an
+ * axis: a component down to 1e-12. */
 static void random_plane(uint64_t *state, int i, double n[DIM], double *alpha) {
   for (int d = 0; d < DIM; d++) n[d] = 2. * uniform(state) - 1.;
   if (i % 5 == 0) n[i / 5 % DIM] *= pow(10., -12. * uniform(state));
@@ -98,7 +98,8 @@ START_TEST(plane_normal_follows_small_errors_of_a_plane) {
 }
 END_TEST
 
-/* Volume of the ball in the cell at x, by lines along the last axis. */
+/* Return the volume of the ball in the cell at x, by lines along the last axis.
+ */
 static double ball_volume(const double x[DIM], const double centre[DIM],
                           double radius) {
   enum { LINES = DIM == 2 ? 200 : 24 };
@@ -118,7 +119,8 @@ static double ball_volume(const double x[DIM], const double centre[DIM],
   return volume;
 }
 
-/* Rms angle of the normal to the radius through the centroid of the cut. */
+/* Return the rms angle of the normal to the radius through the centroid of the
+ * cut. */
 static double ball_error(double radius, uint64_t *state) {
   double squares = 0.;
   int count = 0;
@@ -160,8 +162,9 @@ START_TEST(plane_normal_of_a_ball_is_first_order) {
 }
 END_TEST
 
-/* Fractions of a random fragment: mostly empty and full cells, some cut; in
- * turn scattered, a row of cells, and a single cell with a crumb beside it. */
+/* Draw the fractions of a random fragment: mostly empty and full cells, some
+ * cut; in turn scattered, a row of cells, and a single cell with a crumb beside
+ * it. */
 static void random_fragment(uint64_t *state, int i, double c[PLANE_STENCIL]) {
   for (int s = 0; s < PLANE_STENCIL; s++) {
     double v = fmin(fmax(3. * uniform(state) - 1., 0.), 1.);
@@ -186,13 +189,13 @@ START_TEST(plane_normal_of_a_fragment_is_a_direction_or_zero) {
 }
 END_TEST
 
-/* Stencil s as seen with axis d reversed. */
+/* Return stencil s as seen with axis d reversed. */
 static int reflected(int s, int d) {
   int stride = d == 0 ? 1 : d == 1 ? 3 : 9;
   return s + 2 * stride * (1 - s / stride % 3);
 }
 
-/* Stencil s as seen with axes d and e exchanged. */
+/* Return stencil s as seen with axes d and e exchanged. */
 static int exchanged(int s, int d, int e) {
   int p = d == 0 ? 1 : d == 1 ? 3 : 9, q = e == 0 ? 1 : e == 1 ? 3 : 9;
   int i = s / p % 3, j = s / q % 3;

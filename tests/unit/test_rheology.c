@@ -19,14 +19,14 @@ static const struct {
                   {"mu_T", 0.6}, {"s", 0.7}};
 enum { NPARAMETERS = sizeof(PARAMETERS) / sizeof(PARAMETERS[0]) };
 
-/* A function of a user: viscosity gamma p + t. */
+/* Serve as a function of the user: viscosity gamma p + t. */
 static void product(void *context, double time, int32_t n, const double *gamma,
                     const double *p, double *eta) {
   ck_assert_ptr_null(context);
   for (int i = 0; i < n; i++) eta[i] = gamma[i] * p[i] + time;
 }
 
-/* The table of the last one made is freed by the next. */
+/* Make a closure; its table is freed by the next call. */
 static struct rheology make(const char *name) {
   static struct rheology r;
   const struct rheology_model *model = rheology_find(name);
@@ -290,7 +290,7 @@ START_TEST(rheology_takes_negative_pressure_as_zero) {
 }
 END_TEST
 
-/* 0, denormals, and powers of ten up to 1e12 */
+/* Return 0, denormals, and powers of ten up to 1e12 */
 static double extreme(int i) {
   static const double small[] = {0., 5e-324, 1e-310, DBL_MIN, 1e-300, 1e-160};
   return i < 6 ? small[i] : pow(10., 2 * (i - 6) - 24);

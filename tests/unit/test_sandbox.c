@@ -11,7 +11,7 @@
 
 Suite *sandbox_suite(void);
 
-/* What comes of a piece of code: the text it returns, or a message. */
+/* Return the outcome of a piece of code: the text it returns, or a message. */
 static const char *outcome(const char *code) {
   static char text[2048];
   struct sandbox *sandbox = sandbox_new("x.lua", library_open);

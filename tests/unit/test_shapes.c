@@ -47,8 +47,8 @@ static double constant_value(void *context, const double x[3]) {
   return *(double *)context;
 }
 
-/* Volume of a shape in [0, 1]^DIM by n^DIM cells; the largest fraction that is
- * not in [0, 1] makes it NaN. */
+/* Return the volume of a shape in [0, 1]^DIM by n^DIM cells; the largest
+ * fraction that is not in [0, 1] makes it NaN. */
 static double total(shape_level_set f, void *context, int n, int depth) {
   double sum = 0., h = 1. / n;
   int ncells = DIM == 2 ? n * n : n * n * n;

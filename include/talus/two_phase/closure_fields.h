@@ -14,8 +14,8 @@
 
 struct two_phase;
 
-/* Mean of the present shear rate over the grains, sum c shear_rate V / sum c V;
- * helper nodes of u and c are filled. Collective. */
+/* Return the mean of the present shear rate over the grains, sum c shear_rate V
+ * / sum c V; helper nodes of u and c are filled. Collective. */
 double closure_fields_shear_rate(const struct two_phase *sim);
 
 /* Make sim->shear_rate and sim->known, for as long as they are wanted; helper

@@ -14,11 +14,11 @@
 
 struct params;
 
-/* The friction coefficient of the grains at rest, tau/p of a slow shear under
- * the pressure of `height` m of them; 0 of a liquid. Pure. */
+/* Return the friction coefficient of the grains at rest, tau/p of a slow shear
+ * under the pressure of `height` m of them; 0 of a liquid. Pure. */
 double creep_friction(const struct params *params, double height);
-/* The speed above, m/s, of grains `height` m high; 0 without friction, cap,
- * gravity or height. Pure. */
+/* Return the speed above, m/s, of grains `height` m high; 0 without friction,
+ * cap, gravity or height. Pure. */
 double creep_speed(const struct params *params, double height);
 /* Log it, and warn where params->rest_speed is below it. Not collective. */
 void creep_say(const struct params *params, double height);

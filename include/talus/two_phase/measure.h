@@ -34,13 +34,13 @@ struct diagnostics {
   double *layer[PARAMS_MAX_TRACERS]; /* as outline.height, owned; or NULL */
 };
 
-/* Energy of the gas alone. Collective. */
+/* Return the energy of the gas alone. Collective. */
 double diagnostics_gas(const struct two_phase *sim);
 /* Measure the state, which is left as it is but for scratch. Collective; the
  * same on all ranks. Free with diagnostics_free. */
 void diagnostics_measure(const struct two_phase *sim,
                          struct diagnostics *diagnostics);
-/* The energies alone. Collective. */
+/* Measure the energies alone. Collective. */
 void diagnostics_energy(const struct two_phase *sim, double *kinetic,
                         double *potential);
 /* Measure the layers of the tracers at the time of u, within the heap that

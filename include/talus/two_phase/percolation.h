@@ -54,7 +54,8 @@ struct percolation {
  * permeable. Collective. */
 void percolation_advance(struct two_phase *sim, double dt);
 
-/* K above, m^2: the mean over all gas that has passed; 0: none has. */
+/* Return the permeability K above, m^2, a mean over all gas that has passed; 0:
+ * none has. */
 double percolation_permeability(const struct two_phase *sim);
 
 #endif

@@ -44,7 +44,7 @@
 
 struct phase;
 
-/* rho [nleaves] of leaves; alpha_f [nfaces_all] = 1/rho on faces, 0 on closed
+/* Set rho [nleaves], and alpha_f [nfaces_all] to 1/rho on faces, 0 on closed
  * patches. density[0]: grains, [1]: gas. c filled. Collective. */
 void properties_density(const struct mesh *mesh, const double density[2],
                         const double *c, const bool *closed, double *rho,
@@ -60,22 +60,22 @@ struct gravity {
   double *weight, *surface, *count, *near_surface, *near_count;
 };
 
-/* Gravity a_f on faces [nfaces_all], m/s^2, 0 on closed patches. c filled;
- * normal, plane: the planes of cut leaves (vof_reconstruct); alpha_f as
- * above. Collective. */
+/* Set gravity_f [nfaces_all] to a_f, m/s^2, 0 on closed patches. c filled;
+ * normal, plane: the planes of cut leaves (vof_reconstruct); alpha_f as above.
+ * Collective. */
 void properties_gravity(const struct mesh *mesh, const double density[2],
                         const struct gravity *gravity, const double *c,
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f);
 
-/* shear_f [nfaces] = sqrt(2 D:D) on our own faces; skin: of the mesh, or NULL;
- * u[e] filled. */
+/* Set shear_f [nfaces] to sqrt(2 D:D) on the faces of this rank; skin: of the
+ * mesh, or NULL; u[e] filled. */
 void properties_shear_rate(const struct mesh *mesh, const struct skin *skin,
                            double *const u[DIM], double *shear_f);
 
-/* eta_f [nfaces_all], Pa s, at a time, s. gas NULL: grains only. c, p filled;
- * normal, plane: the planes of cut leaves; shear_f as above; work: two scratch
- * arrays [nfaces]. Collective. */
+/* Set eta_f [nfaces_all], Pa s, at a time, s. gas NULL: grains only. c, p
+ * filled; normal, plane: the planes of cut leaves; shear_f as above; work: two
+ * scratch arrays [nfaces]. Collective. */
 void properties_viscosity(const struct mesh *mesh, double time,
                           const struct phase *grains, const struct phase *gas,
                           const double gravity[DIM], const double *c,

@@ -7,8 +7,8 @@
 
 struct two_phase;
 
-/* Largest speed, m/s, of leaves more than half full of grains, the max_speed
- * of series.csv; 0 if there are none. Collective. */
+/* Return the largest speed, m/s, of leaves more than half full of grains, the
+ * max_speed of series.csv; 0 if there are none. Collective. */
 double rest_fastest(const struct two_phase *sim);
 /* Note after a step whether the grains are slow, and return whether they have
  * been for as long as the case asks. False where it does not ask. Collective.

@@ -21,7 +21,7 @@
 struct step_taken;
 struct two_phase;
 
-/* The right hand side of (1), or what (2) asks for if that is more; s. u_0 is
+/* Return the right hand side of (1), or that of (2) if it is more; s. u_0 is
  * taken from the functions of the case at the leaves. Collective. */
 double step_floor(const struct two_phase *sim);
 

@@ -35,13 +35,14 @@ struct two_phase;
  * u_f, as below. Collective. */
 double time_step_choose(const struct two_phase *sim, double dt_max,
                         double *rate);
-/* Largest 1/2 sum |u_f| A / V, 1/s. Collective. */
+/* Return the largest 1/2 sum |u_f| A / V, 1/s. Collective. */
 double time_step_rate(const struct two_phase *sim);
 /* Return dt if the step that was taken with it may stand, by its new u_f; else
  * a shorter one to repeat it with. Collective. */
 double time_step_allowed(const struct two_phase *sim, double dt);
-/* Largest speed that a boundary gives to a face, in leaves per time (per_leaf)
- * or as it is: what a flow at rest is about to feel. This rank only. */
+/* Return the largest speed that a boundary gives to a face, in leaves per time
+ * (per_leaf) or in m/s, which a flow at rest is about to feel. This rank only.
+ */
 double time_step_boundary_speed(const struct two_phase *sim, bool per_leaf);
 
 #endif
