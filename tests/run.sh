@@ -5,7 +5,7 @@
 #   tests/run.sh BUILD GROUP...
 #
 #   format    clang-format 14 has nothing to change
-#   includes  tools/check_includes.py; no circle of files (check_circles.py)
+#   includes  tools/check_includes.py, check_prose.py, check_circles.py
 #   unit      BUILD/{2d,3d}/unit
 #   mesh      BUILD/{2d,3d}/mesh on 1, 2 and 3 ranks
 #   case      tests/case/*.sh BUILD; silent if all is well, 77 means skipped
@@ -126,6 +126,7 @@ group_format() {
 
 group_includes() {
   run_one includes "${PYTHON:-python3}" tools/check_includes.py
+  run_one prose "${PYTHON:-python3}" tools/check_prose.py
   run_one circles "${PYTHON:-python3}" tools/check_circles.py "$build"
 }
 

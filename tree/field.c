@@ -88,8 +88,8 @@ void fields_restore(struct fields *fields, const struct mesh *mesh) {
   }
 }
 
-/* Only what is finite leaves 0 times it; in parts, so that the compiler may
- * use vectors. */
+/* Are all values finite? Only then is the sum of 0 v zero; in parts, so that
+ * the compiler may use vectors. */
 static bool is_finite(int32_t n, const double *v) {
   enum { LANES = 8 };
   double zero[LANES] = {0}, sum = 0;

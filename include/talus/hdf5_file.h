@@ -27,7 +27,7 @@ enum hdf5_type { HDF5_REAL, HDF5_INT64, HDF5_INT8 };
 struct hdf5_file *hdf5_create(MPI_Comm comm, const char *path, size_t head);
 /* Open a file to read; NULL on all ranks if it is missing or no HDF5 file. */
 struct hdf5_file *hdf5_open(MPI_Comm comm, const char *path);
-/* The communicator it was opened on. Not collective. */
+/* Return the communicator that the file was opened on. Not collective. */
 MPI_Comm hdf5_comm(const struct hdf5_file *file);
 /* Write out everything; with `sync` not before it is on the disk. */
 void hdf5_close(struct hdf5_file *file, bool sync);

@@ -27,7 +27,7 @@ struct plan_request {
   int32_t index; /* where the answer goes in the asker's array */
 };
 
-/* A type of MPI for things of so many bytes, to be freed by the caller. */
+/* Make a type of MPI for things of so many bytes, to be freed by the caller. */
 MPI_Datatype plan_type_new(size_t bytes);
 /* Begin an empty plan. */
 void plan_begin(struct plan *plan, MPI_Comm comm);

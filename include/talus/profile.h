@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* profile.csv: outlines of the heap, `time,x,height` (3D: `time,x,y,height`),
  * height = int c dz of the heap per finest column, then a column per tracer
- * with what of that height is its own (diagnostics.h).
+ * with the part of that height that the tracer has (outline.h).
  *
  * To keep the file small only columns with some height are listed, and those
  * next to them; all others have the height 0. */

@@ -85,8 +85,8 @@ static void link_nodes(struct clean *clean, const struct mesh *mesh) {
   }
 }
 
-/* A node straddles ranks where a rank's share begins inside it; it is named
- * by the first such rank and its level. */
+/* Mark the nodes that straddle ranks, as a rank's share begins inside them;
+ * such a node is named by its level and the first such rank. */
 static void mark_straddling(struct clean *clean, const struct mesh *mesh) {
   clean->slot = MEM_NEW(int32_t, clean->ninner);
   clean->nslots = mesh->nranks * (FOREST_MAX_LEVEL + 1);
@@ -303,8 +303,8 @@ static void share_out(const double net[NCHILD], double change[NCHILD][NFACE]) {
   }
 }
 
-/* A node is told how its face fluxes change: a leaf changes the velocities of
- * the faces it owns. */
+/* Tell a node how its face fluxes change; a leaf changes the velocities of the
+ * faces it owns. */
 static void tell_node(struct clean *clean, const struct mesh *mesh,
                       int32_t node, const double change[NFACE], double *u_f) {
   if (node >= mesh->nleaves) {

@@ -122,7 +122,8 @@ static void clear_sides(struct hierarchy *h) {
   }
 }
 
-/* Of the mass, overwritten, walls and sides. */
+/* Set the inverse of the diagonal from mass, which is overwritten, walls and
+ * sides. */
 static void set_inverse(struct hierarchy *h, double *restrict mass,
                         double *const wall[]) {
   for (int32_t i = 0; i < h->nowned; i++) {

@@ -110,7 +110,7 @@ KERNEL void relax(struct hierarchy *h, struct run run, int nparts) {
   }
 }
 
-/* The same from e = 0. */
+/* Relax a run as `relax` does, from e = 0. */
 KERNEL void relax_first(struct hierarchy *h, struct run run, int nparts) {
   for (int c = 0; c < nparts; c++) {
 #pragma GCC ivdep
@@ -225,8 +225,8 @@ KERNEL void prolong_block(struct hierarchy *h, int l, int c, int32_t first,
   }
 }
 
-/* A single component is relaxed on red nodes next, from black ones alone, so
- * that red children need no value. */
+/* Prolong e to level l. A single component is relaxed on red nodes
+ * next, from black ones alone, so that red children need no value. */
 KERNEL void prolong(struct hierarchy *h, int l, int nparts) {
   const int32_t nfamilies = h->level[l].nfamilies;
   for (int32_t first = 0; first < nfamilies; first += BLOCK) {

@@ -143,7 +143,7 @@ static void find_leaves(struct linking *k) {
   }
 }
 
-/* The sides of owned nodes follow one another level by level. */
+/* Divide the list of sides of owned nodes, which are in the order of levels. */
 static void divide_sides(struct hierarchy *h) {
   int32_t k = 0;
   for (int l = 0; l < h->nlevels; l++) {

@@ -172,7 +172,7 @@ void skin_nodes_set(struct hierarchy *h, const struct skin *skin);
 void skin_nodes_relax(struct hierarchy *h, int l, int q);
 /* Add to r of parents what the weights change in the residual of level l. */
 void skin_nodes_restrict(struct hierarchy *h, int l);
-/* The cycle on the trees alone (coarse.c): from h->r to h->e. */
+/* Solve on the trees alone (coarse.c): from h->r to h->e. */
 void coarse_solve(struct hierarchy *h);
 
 #endif

@@ -72,7 +72,8 @@ static void link_faces(struct linking *k, int l, int32_t family, int c) {
   }
 }
 
-/* The node a step away along both axes; a step across a wall is dropped. */
+/* Return the node a step away along both axes; a step across a wall is dropped.
+ */
 static int32_t corner_of(struct linking *k, int l, int32_t family, int c, int a,
                          int upper_a, int b, int upper_b) {
   const struct hierarchy *h = k->h;

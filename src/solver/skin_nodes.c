@@ -202,7 +202,8 @@ static inline void add_rows(const struct hierarchy *h,
   }
 }
 
-/* The relaxation without weights has left e = pull / diagonal. */
+/* Relax again with weights, the relaxation without having left e = pull /
+ * diagonal. */
 void skin_nodes_relax(struct hierarchy *h, int l, int q) {
   if (h->nskin == 0) return;
   const int32_t *begin = h->skin_begin + l * NCHILD + q;
@@ -222,7 +223,7 @@ void skin_nodes_relax(struct hierarchy *h, int l, int q) {
   }
 }
 
-/* The last run, relaxed last, has no residual. */
+/* Add what the weights change; the last run, relaxed last, has no residual. */
 void skin_nodes_restrict(struct hierarchy *h, int l) {
   if (h->nskin == 0) return;
   const int32_t *begin = h->skin_begin + l * NCHILD;

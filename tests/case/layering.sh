@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # tools/check_includes.py finds one violation of each rule, and nothing in the
-# clean file beside them; tools/check_circles.py finds two files that call each
-# other, and not a third that calls both. Usage: layering.sh BUILD
+# clean file beside them; tools/check_prose.py as well; tools/check_circles.py
+# finds two files that call each other, and not a third that calls both. Usage:
+# layering.sh BUILD
 . "$(dirname "$0")/common.bash"
 set -eo pipefail
 tree=$directory
@@ -58,6 +59,14 @@ if [ "$(wc -l <<< "$found")" -ne "$(wc -l <<< "$expected")" ]; then
   echo "found: $found"
   exit 1
 fi
+
+mkdir -p "$tree"/tools "$tree"/tests
+file src/base/prose.c '/* The sum of both, as in error.h and prose.h. */' \
+  'int sum(int a, int b) {' '}' '/* Add as NAME.c does. */' 'int add(int a);'
+found=$(python3 "$root/tools/check_prose.py" "$tree") && exit 1
+expected='src/base/prose.c:2: there is no prose.h
+src/base/prose.c:2: begin with a verb, not with The'
+[ "$found" = "$expected" ] || { echo "$found"; exit 1; }
 
 circles=$root/tools/check_circles.py
 mkdir -p build/2d/src/flow

@@ -4,7 +4,7 @@
  * depends on the grid, on the time step and on the box.
  *
  * There is no exact solution: each level is compared with the one below it.
- * Front and height are those of diagnostics.h; outlines differ by
+ * Front and height are those of outline.h; outlines differ by
  *   int |h - h'| dx / int h dx,
  * with two columns of the finer grid averaged for one of the coarser. What the
  * front does on a floor without slip depends on the cell at the floor, so that

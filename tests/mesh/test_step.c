@@ -119,8 +119,9 @@ START_TEST(a_dense_block_moves_on_through_light_gas) {
 }
 END_TEST
 
-/* A block off the lines of the grid moves through gas at rest: a cut leaf
- * starts with the momentum of the grains in it, wherever its centre is. */
+/* Return the level set of a block off the lines of the grid, which moves
+ * through gas at rest: a cut leaf starts with the momentum of the grains in it,
+ * wherever its centre is. */
 static double slanted(void *context, const double x[3]) {
   (void)context;
   double sum = 0.9;
@@ -290,8 +291,8 @@ static void fail_a_step(struct two_phase *sim, struct params *params) {
   params->max_iterations = most;
 }
 
-/* A fall with the grid behind it, in numbers; the largest |div u_f| dt left
- * behind by a step. */
+/* Put a fall that the grid follows into numbers; returns the largest |div u_f|
+ * dt that a step leaves. */
 static double fall(enum look look, double out[NNUMBERS]) {
   struct params params = box_params(DIM == 2 ? 6 : 4);
   double divergence = 0;
@@ -468,8 +469,9 @@ START_TEST(a_stiff_fluid_comes_to_rest_in_its_mean_flow) {
 }
 END_TEST
 
-/* A dense square at the speed of the gas around it, without forces: nothing
- * is to change but its place, whatever the ratio of the densities. */
+/* Return the velocity of a dense square and of the gas around it, without
+ * forces: nothing is to change but its place, whatever the ratio of the
+ * densities. */
 static double drift(void *context, const double x[3]) {
   (void)x;
   return *(const int *)context == 0 ? 1 : 0.5;

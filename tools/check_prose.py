@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Verifies the rules of prose that a script can see.
+
+1. What stands over a function says what the function does, so it begins with a
+   verb, not with one of NOT_FIRST.
+2. Files that comments and pages name exist: the path from the root, that below
+   include/ or include/talus/, or a name alone. NAME in capitals, as in NAME.c,
+   stands for any.
+
+Prints each violation as file:line: message and ends with status 1 if there are
+any.
+"""
+import pathlib
+import re
+import sys
+
+NOT_FIRST = {"Of", "What", "Whether", "Which", "The", "A", "An", "How", "So",
+             "Else", "It", "Its", "This", "That", "Those", "These", "Where"}
+# Files of other programs.
+FOREIGN = {"lstrlib.c", "granular_sandglass.c"}
+
+COMMENT = re.compile(r"/\*.*?\*/", re.S)
+# A comment at the begin of a line, then the head of a function.
+OVER_FUNCTION = re.compile(r"^/\*(?P<text>(?:(?!\*/).)*)\*/ *\n"
+                           r"(?!START_TEST)[A-Za-z][^;{=#]*?\([^;{]*[;{]",
+                           re.S | re.M)
+FILE = re.compile(r"(?<![\w.*/-])((?:[\w-]+/)*[\w-]+\.(?:c|h|py|sh|md))"
+                  r"(?!\w|\.\w)")
+ANY = re.compile(r"(?<![A-Za-z])[A-Z]{3,}(?=[./])")
+
+
+class Checker:
+    """Finds violations in the tree below `root`."""
+
+    def __init__(self, root):
+        self.root = root
+        self.sources = [path for pattern in
+                        ("include/**/*.h", "src/**/*.[ch]", "tree/*.[ch]",
+                         "tests/**/*.[ch]") for path in root.glob(pattern)]
+        self.pages = [*root.glob("*.md"), *root.glob("docs/**/*.md")]
+        self.names = {path.name for path in self.sources + self.pages}
+        self.names.update(path.name for folder in ("tools", "tests")
+                          for path in (root / folder).rglob("*.*"))
+        self.violations = []
+
+    def complain(self, path, text, place, message):
+        line = text.count("\n", 0, place) + 1
+        name = path.relative_to(self.root)
+        self.violations.append(f"{name}:{line}: {message}")
+
+    def exists(self, name):
+        if ANY.search(name):
+            return True
+        if "/" not in name:
+            return name in self.names | FOREIGN
+        return any((self.root / folder / name).exists()
+                   for folder in ("", "include", "include/talus"))
+
+    def check_names(self, path, text, begin, end):
+        for match in FILE.finditer(text, begin, end):
+            if not self.exists(match.group(1)):
+                self.complain(path, text, match.start(),
+                              f"there is no {match.group(1)}")
+
+    def check_source(self, path):
+        text = path.read_text(encoding="utf-8")
+        for comment in COMMENT.finditer(text):
+            self.check_names(path, text, *comment.span())
+        for match in OVER_FUNCTION.finditer(text):
+            word = match.group("text").lstrip("\n *").split(None, 1)[:1]
+            if word and word[0].strip(",:;") in NOT_FIRST:
+                self.complain(path, text, match.start(),
+                              f"begin with a verb, not with {word[0]}")
+
+    def check_all(self):
+        for path in sorted(self.sources):
+            self.check_source(path)
+        for path in sorted(self.pages):
+            text = path.read_text(encoding="utf-8")
+            self.check_names(path, text, 0, len(text))
+        return self.violations
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else
+                        pathlib.Path(__file__).parent.parent).resolve()
+    violations = Checker(root).check_all()
+    print("\n".join(violations), end="\n" if violations else "")
+    return 1 if violations else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
