@@ -34,7 +34,6 @@ static void set_patch(struct two_phase *sim, int patch, int axis,
       bc->type = BC_DIRICHLET; /* a wall moves along itself only */
       if (boundary->type == BOUNDARY_NO_SLIP && e == axis) bc->value = 0;
     }
-    sim->u_old[e]->bc[patch] = *bc;
   }
   if (open) {
     sim->p->bc[patch] = (struct bc){BC_DIRICHLET, boundary->pressure, 0};

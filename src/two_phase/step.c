@@ -587,7 +587,6 @@ static void set_back(struct two_phase *sim, const struct two_phase *before) {
   sim->energy = before->energy;
   sim->divergence_volume = before->divergence_volume;
   sim->percolation = before->percolation;
-  sim->travel = before->travel;
 }
 
 /* Give back the face velocity of before a step, which is done or set back. */
