@@ -10,7 +10,7 @@
 
 Suite *closure_fields_suite(void);
 
-static double height = 0.5;
+static double height;
 static const double RATE = 3, PRESSURE = 40;
 
 static struct rheology lee_huang(void) {
@@ -41,8 +41,10 @@ static bool is_inside(const struct two_phase *sim, int32_t i) {
   return inside;
 }
 
+/* The surface fills a row of leaves by 0.4, which count as gas. */
 START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
   struct params params = box_params(4);
+  height = 0.5 + 0.4 / 16;
   params.grains.rheology = lee_huang();
   params.shape = (struct function){below, &height};
   if (_i) params_follow_surface(&params, 2, 1);
@@ -79,9 +81,34 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
 }
 END_TEST
 
+/* Stretched along x and pressed along y at RATE: sqrt(2 D:D) is twice that. */
+START_TEST(stretching_at_a_rate_shears_at_twice_of_it) {
+  struct params params = box_params(3);
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  double most = 0, cells = 0;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    sim->u[0]->v[i] = RATE * sim->grid.mesh->x[i][0];
+    sim->u[1]->v[i] = -RATE * sim->grid.mesh->x[i][1];
+  }
+  closure_fields_update(sim);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    if (!is_inside(sim, i)) continue;
+    most = larger(most, fabs(sim->shear_rate->v[i] - 2 * RATE));
+    cells++;
+  }
+  most = mesh_max(sim->grid.mesh, most);
+  cells = mesh_sum(sim->grid.mesh, cells);
+  closure_fields_release(sim);
+  two_phase_destroy(sim);
+  ck_assert_double_gt(cells, 0);
+  ck_assert_double_le(most, 1e-12);
+}
+END_TEST
+
 /* The mean leaves out the gas. */
 START_TEST(the_mean_shear_rate_is_that_of_the_grains) {
   struct params params = box_params(5);
+  height = 0.5;
   params.shape = (struct function){below, &height};
   params.boundary[0].type = params.boundary[1].type = BOUNDARY_PERIODIC;
   params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
@@ -99,6 +126,7 @@ Suite *closure_fields_suite(void) {
   TCase *tcase = tcase_create("all");
   tcase_add_loop_test(
       tcase, grains_have_their_shear_rate_and_state_and_gas_none, 0, 2);
+  tcase_add_test(tcase, stretching_at_a_rate_shears_at_twice_of_it);
   tcase_add_test(tcase, the_mean_shear_rate_is_that_of_the_grains);
   suite_add_tcase(suite, tcase);
   return suite;

@@ -5,6 +5,7 @@
 
 #include "bench.h"
 #include "talus/params.h"
+#include "talus/plane.h"
 #include "talus/vof.h"
 
 Suite *properties_suite(void);
@@ -266,6 +267,54 @@ START_TEST(gravity_on_a_tilted_bed_is_a_gradient) {
 }
 END_TEST
 
+/* With gravity along the last axis the leaves of the same bed differ in G. A
+ * face between two cut ones takes the mean of what their planes say. */
+START_TEST(cut_leaves_keep_the_level_of_their_own_plane) {
+  struct bench *b = bench_new(1, false, 4, 4);
+  const struct mesh *mesh = b->mesh;
+  struct mixture m = mixture_new(b);
+  double *rho = bench_cell(b, "rho")->v, *alpha_f = bench_face(b, "alpha")->v;
+  double *gravity_f = bench_face(b, "gravity")->v, most = 0, faces = 0;
+  double *level = bench_cell(b, "level")->v;
+  struct gravity gravity = {.weight = bench_cell(b, "weight")->v,
+                            .surface = bench_cell(b, "surface")->v,
+                            .count = bench_cell(b, "count")->v,
+                            .near_surface = bench_cell(b, "near_surface")->v,
+                            .near_count = bench_cell(b, "near_count")->v};
+  gravity.bounded[DIM - 1] = -1;
+  fill_shape(mesh, plane_level_set, NULL, m.c->v);
+  field_fill(mesh, m.c);
+  vof_reconstruct(mesh, m.c->v, m.normal, m.plane->v);
+  properties_density(mesh, kDensity, m.c->v, b->closed, rho, alpha_f);
+  properties_gravity(mesh, kDensity, &gravity, m.c->v, m.normal, m.plane->v,
+                     alpha_f, gravity_f);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double n[DIM], at[DIM];
+    for (int d = 0; d < DIM; d++) n[d] = m.normal[d][i];
+    plane_centroid(n, m.plane->v[i], at);
+    level[i] = -(mesh->x[i][DIM - 1] + mesh->h[i] * at[DIM - 1]);
+  }
+  mesh_fill_ghosts(mesh, 2, (double *const[]){rho, level});
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int32_t *at = mesh->face_leaf[f];
+    if (mesh->face_patch[f] >= 0) continue;
+    const double c[] = {m.c->v[at[0]], m.c->v[at[1]]};
+    if (!vof_is_cut(c[0]) || !vof_is_cut(c[1])) continue;
+    const double mean = 0.5 * (level[at[0]] + level[at[1]]);
+    const double weight = -rho[at[1]] * mesh->x[at[1]][DIM - 1] +
+                          rho[at[0]] * mesh->x[at[0]][DIM - 1];
+    const double jump = (kDensity[0] - kDensity[1]) * (c[1] - c[0]);
+    const double exact = alpha_f[f] * (weight - jump * mean) / mesh->face_h[f];
+    most = larger(most, fabs(gravity_f[f] - exact));
+    faces++;
+  }
+  most = mesh_max(mesh, most), faces = mesh_sum(mesh, faces);
+  bench_destroy(b);
+  ck_assert_double_gt(faces, 5);
+  ck_assert_double_le(most, 1e-9); /* as above */
+}
+END_TEST
+
 /* Harmonic mean of 200 and 0.5 by the part of the line between the two nodes
  * of a face that lies below the surface. */
 START_TEST(phases_are_mixed_in_series_along_the_line) {
@@ -370,6 +419,7 @@ Suite *properties_suite(void) {
   tcase_add_loop_test(tc, shear_rate_of_linear_velocities_is_exact, 0, 4);
   tcase_add_test(tc, face_pressure_is_exact_for_linear_profiles);
   tcase_add_loop_test(tc, gravity_on_a_tilted_bed_is_a_gradient, 0, 2);
+  tcase_add_test(tc, cut_leaves_keep_the_level_of_their_own_plane);
   tcase_add_test(tc, phases_are_mixed_in_series_along_the_line);
   tcase_add_loop_test(tc, lines_along_the_surface_lie_half_in_the_grains, 0, 3);
   tcase_add_test(tc, each_phase_takes_its_own_closure);

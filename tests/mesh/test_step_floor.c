@@ -70,12 +70,41 @@ START_TEST(the_floor_is_that_of_the_fastest_time) {
 }
 END_TEST
 
+static double twice(void *context, const double x[3]) {
+  (void)x;
+  return 2 * *(const double *)context;
+}
+static double same(void *context, const double x[3]) {
+  (void)x;
+  return *(const double *)context;
+}
+
+/* L = 2: 2/4 with the speed along y, sqrt(2/32) with gravity, or 0.1 to stop,
+ * whichever is least. */
+
+START_TEST(each_time_of_the_case_may_bind) {
+  const double stop = _i == 2 ? 0.1 : 10, exact[] = {0.5, 0.25, 0.1};
+  double along[] = {3, 2};
+  struct params params = box_params(2);
+  params.size = 2;
+  params.stop = stop;
+  params.gravity[DIM - 1] = _i >= 1 ? -32 : 0;
+  params.velocity[0] = (struct function){same, &along[0]};
+  params.velocity[1] = (struct function){twice, &along[1]};
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  const double floor = step_floor(sim);
+  two_phase_destroy(sim);
+  ck_assert_double_eq_tol(floor, 1e-9 * exact[_i], 1e-24);
+}
+END_TEST
+
 Suite *step_floor_suite(void) {
   Suite *suite = suite_create("step_floor");
   TCase *tcase = tcase_create("floor");
   tcase_add_test(tcase, a_run_that_cannot_end_is_given_up);
   tcase_add_test(tcase, a_fast_run_may_go_on);
   tcase_add_test(tcase, the_floor_is_that_of_the_fastest_time);
+  tcase_add_loop_test(tcase, each_time_of_the_case_may_bind, 0, 3);
   suite_add_tcase(suite, tcase);
   return suite;
 }

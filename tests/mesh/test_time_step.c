@@ -156,19 +156,37 @@ static struct two_phase *bed_at_rest(struct params *params) {
 START_TEST(another_gravity_is_a_new_start) {
   struct params params;
   struct two_phase *sim = bed_at_rest(&params);
-  const double before = sim->conditions.energy;
+  const struct conditions before = sim->conditions;
+  const double gas = sim->energy.gas;
   params.gravity[DIM - 1] *= 10;
   conditions_renew(sim);
   const double changed = sim->energy.changed, dt = sim->model.dt;
+  const double of_gas = sim->energy.gas - gas;
   bool done = true;
   for (int k = 0; k < 5; k++)
     done = done && step_advance(sim, 0.4) == EXIT_DONE;
   const double speed = largest(sim, sim->u);
   two_phase_destroy(sim);
   ck_assert(done);
-  ck_assert_double_eq_tol(changed, 9 * before, 1e-12 * before);
+  ck_assert_double_eq_tol(changed, 9 * before.energy, 1e-12 * before.energy);
+  ck_assert_double_eq_tol(of_gas, 9 * before.gas, 1e-12 * fabs(before.gas));
   ck_assert_double_eq(dt, 0);
   ck_assert_double_le(speed, 1e-10);
+}
+END_TEST
+
+/* What comes in with speed 0.7 through a side of area 1. */
+START_TEST(inflow_is_speed_times_area) {
+  struct params params = box_params(3);
+  params.gravity[DIM - 1] = 0;
+  params.boundary[0] =
+      (struct boundary){.type = BOUNDARY_INFLOW, .velocity = {0.7, 0, 0}};
+  params.boundary[1].type = BOUNDARY_OUTFLOW;
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  conditions_measure(sim, &sim->conditions);
+  const double inflow = sim->conditions.inflow;
+  two_phase_destroy(sim);
+  ck_assert_double_eq_tol(inflow, 0.7, 1e-14);
 }
 END_TEST
 
@@ -210,6 +228,7 @@ Suite *time_step_suite(void) {
   tcase_add_test(tc, dt_grows_by_a_fifth_a_step);
   tcase_add_loop_test(tc, c_is_in_0_1_however_long_it_has_lagged, 0, 4);
   tcase_add_test(tc, another_gravity_is_a_new_start);
+  tcase_add_test(tc, inflow_is_speed_times_area);
   tcase_add_test(tc, a_tilt_is_a_sudden_start);
   tcase_add_test(tc, the_same_conditions_change_nothing);
   suite_add_tcase(suite, tc);

@@ -49,11 +49,25 @@ START_TEST(a_liquid_has_no_friction_to_speak_of) {
 }
 END_TEST
 
+/* What bounds and regularises the viscosity has no part in friction. */
+START_TEST(friction_is_that_of_the_closure_itself) {
+  struct params p = params_of("coulomb", "mu_s", 0.5);
+  p.grains.rheology.gamma_r = 1;
+  ck_assert_int_eq(
+      rheology_set_regularisation(&p.grains.rheology, "bercovier_engelman"), 0);
+  ck_assert_double_eq_tol(creep_friction(&p, 1), 0.5, 1e-12);
+  p = params_of("newtonian", "eta", 1);
+  p.grains.rheology.eta_min = 1e12;
+  ck_assert_double_le(creep_friction(&p, 1), 1e-5);
+}
+END_TEST
+
 Suite *creep_suite(void) {
   Suite *suite = suite_create("creep");
   TCase *tcase = tcase_create("cap");
   tcase_add_test(tcase, a_slope_creeps_as_a_liquid_of_eta_max);
   tcase_add_test(tcase, cohesion_holds_too);
+  tcase_add_test(tcase, friction_is_that_of_the_closure_itself);
   tcase_add_test(tcase, a_liquid_has_no_friction_to_speak_of);
   suite_add_tcase(suite, tcase);
   return suite;
