@@ -26,8 +26,8 @@
 
 struct case_file;
 
-/* Deepest levels a case may ask for; those of the forest, which each program
- * knows for its own dimension only. And its most trees. */
+/* Deepest levels and most trees that a case may ask for, those of the forest; a
+ * program knows the forest of one dimension only. */
 enum { CASE_MAX_LEVEL_2D = 24, CASE_MAX_LEVEL_3D = 16, CASE_MAX_TREES = 32767 };
 
 /*

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Checkpoint: all that a run needs to go on, in one HDF5 file.
  *
- * The forest is stored as the levels of all leaves in Morton order, and how
- * many of them each rank had. Cell fields are stored in the same order. Of a
+ * The forest is stored as the levels of all leaves in Morton order, and the
+ * number of leaves of each rank. Cell fields are stored in the same order. Of a
  * face field each leaf stores the values on its 2 DIM sides [lower x, upper x,
- * ...]; a face that another mesh asks for is read from the side of the leaf
- * that owns it, which is that whole face, so nothing is lost on the average
- * sides of coarse leaves. Doubles are stored as they are: on the same number of
- * ranks a restarted run repeats the other bit by bit; on another number it goes
- * on from the same values with its leaves spread evenly.
+ * ...]. A face is read from the side of the leaf that owns the face, where side
+ * and face are the same, so nothing is lost on the average sides of coarse
+ * leaves. Doubles are stored without rounding: on the same number of ranks a
+ * restarted run repeats the first one bit by bit; on another number it goes on
+ * from the same values with leaves spread evenly.
  *
  * The file is written beside the old one, sealed (seal.h), brought to the disk,
  * and then takes the place of the old one, so that a crash or a full disk

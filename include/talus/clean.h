@@ -3,8 +3,8 @@
  *
  * An iterative projection leaves a divergence of the size of its tolerance,
  * which VOF would turn into a drift of volume. Here every cell of the tree,
- * from the root down, shares out what its children have too much or too
- * little of across the faces between them: with N_a the net outflow of child
+ * from the root down, shares the excess of its children out across the faces
+ * between the children: with N_a the net outflow of child
  * a, the smallest change of the inner fluxes is
  *   dF_ab = psi_a - psi_b,   sum_b (psi_a - psi_b) = -N_a,
  * a Laplacian on the 2^DIM children, diagonal in the Walsh-Hadamard basis

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* csv files that grow with the run: a header line, then rows.
  *
- * Rank 0 writes; on the other ranks the functions do nothing. Every row is on
- * its way to the disk when it is complete.
+ * Rank 0 writes; on the other ranks the functions do nothing. A complete row is
+ * on the way to the disk.
  *
  * A checkpoint keeps how far each file had come (struct csv_mark), so that a
- * restart knows whether all rows before it are there, to the last character;
- * those after it are repeated. */
+ * restart can tell whether all earlier rows are there, to the last character;
+ * later rows are repeated. */
 #ifndef TALUS_CSV_H
 #define TALUS_CSV_H
 

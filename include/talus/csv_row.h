@@ -41,8 +41,8 @@ bool csv_row_read(FILE *f, struct csv_row *row);
  * It lasts until the next csv_row_read. */
 const char *csv_row_cell(const struct csv_row *row, int k);
 
-/* Reads the number that cell k is, from its first to its last character;
- * returns false, *value as it was, if it is none. */
+/* Reads cell k as a number, all characters of the cell; returns false, *value
+ * as it was, if the cell is no number. */
 bool csv_row_number(const struct csv_row *row, int k, double *value);
 
 /* Adds a cell to the row that is being written; the first one after the end of

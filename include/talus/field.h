@@ -46,8 +46,8 @@ struct field {
                               of fields_restore, so that fields_save makes no
                               copy; this field itself if v does not change;
                               NULL: fields_save makes a copy */
-  bool on_demand; /* v is NULL but while a user of the field, who allocates it
-                     on the leaves and frees it, needs it */
+  bool on_demand; /* v is allocated, on the leaves, while somebody needs the
+                     field, else NULL */
   struct bc bc[MESH_MAX_PATCHES];
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Keys of a case file: reading, checking, printing and help all work from
- * tables of them. `case` has those that all models share (src/case/keys.c), and
- * each model brings its own. */
+ * tables of keys. `case` has the keys that all models share (src/case/keys.c),
+ * and each model brings its own. */
 #ifndef TALUS_KEY_H
 #define TALUS_KEY_H
 

@@ -7,7 +7,7 @@
  * of coarse leaves. The function does not change, so it is asked once, the
  * ranks sharing the work, down to the finest level at which there are no more
  * than LEVEL_RASTER_POINTS cells in the box (level 12 of a square, 8 of a
- * cube); below that it is asked in each leaf anew. Values beyond the levels of
+ * cube); below that level each leaf asks anew. Values beyond the levels of
  * the grid are taken as its coarsest or finest one.
  */
 #ifndef TALUS_LEVEL_RASTER_H

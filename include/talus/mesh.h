@@ -191,7 +191,7 @@ static inline double mesh_divergence(const struct mesh *mesh, const double *v,
 }
 
 /* Return half of what crosses the sides of leaf i in either direction over its
- * volume, 1/s: how often a velocity v replaces its contents per time. */
+ * volume, 1/s: how often a velocity v replaces the contents of the leaf. */
 static inline double mesh_turnover(const struct mesh *mesh, const double *v,
                                    int32_t i) {
   double sum = 0;
@@ -265,7 +265,7 @@ void mesh_fill_potential(const struct mesh *mesh, const double *rho, int n,
                          double *const v[], const struct bc *const bc[],
                          bool homogeneous);
 /* Spread a mark, 0 or more on leaves, by one leaf in every direction: set it to
- * 1 in leaves that had it anywhere in their stencil, else to 0. Virtual
+ * 1 in leaves with a mark anywhere in the stencil, else to 0. Virtual
  * children have the mark of their leaf, boundary nodes none. mark [ncells],
  * valid on leaves. Collective. */
 void mesh_spread(const struct mesh *mesh, double *mark);

@@ -2,9 +2,9 @@
 /* Model: what the program asks of a model of granular flow.
  *
  * A model is a folder of src/ with a struct that begins with a `struct model`,
- * a table of its keys and a `struct model_kind`; src/models.c lists them. The
- * program starts it, or fills the fields and scalars of one from a checkpoint,
- * advances it, and writes what it measures.
+ * a table of keys and a `struct model_kind`; src/models.c lists all models. The
+ * program starts a model, or fills the fields and scalars of one from a
+ * checkpoint, advances it, and writes what it measures.
  */
 #ifndef TALUS_MODEL_H
 #define TALUS_MODEL_H
@@ -31,8 +31,8 @@ struct model {
 /* How a model starts, which takes long on a fine grid. */
 struct model_start {
   int64_t most_leaves; /* for which there is memory; 0: no bound */
-  /* Told now and then what is being done, what part of it is done, and the
-   * leaves so far; on every rank for itself. NULL: nobody is told. */
+  /* Called now and then on each rank with what is being done, the part of that
+   * which is done, and the leaves so far. NULL: nobody is told. */
   void (*tell)(void *context, const char *what, double part, int64_t leaves);
   void *context;
 };

@@ -8,13 +8,13 @@
  *   rho* = rho - dt/h [M]_d + rho_cc dt/h [u_f]_d,
  * rho_cc the density of cc and u_0 the velocity before the first sweep, so
  * that these terms add up to zero over the axes; u^up is the upwind velocity
- * with a limited slope. Cut leaves have no slope: nearly all their grains may
- * leave in one sweep, and what stays behind must keep a velocity between those
- * around it. A uniform velocity is kept to round-off whatever the density
- * ratio. A face next to a band leaf carries this one flux; the pure leaf on
- * its other side takes it as u* = u - dt/(h rho) [M u^up - M u]_d and has its
- * other faces served by the Bell-Colella-Glaz step (advection.h), so that
- * momentum crosses each face once.
+ * with a limited slope. Cut leaves have no slope: nearly all grains of a leaf
+ * may go in one sweep, and the rest must keep a velocity between those of the
+ * neighbours. A uniform velocity is kept to round-off whatever the density
+ * ratio. A face next to a leaf of the band carries this one flux. A pure leaf
+ * on the other side takes it as u* = u - dt/(h rho) [M u^up - M u]_d, and the
+ * Bell-Colella-Glaz step (advection.h) serves the other faces of the pure leaf,
+ * so that momentum crosses each face once.
  */
 #ifndef TALUS_MOMENTUM_H
 #define TALUS_MOMENTUM_H

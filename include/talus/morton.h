@@ -3,7 +3,7 @@
  * integers.
  *
  * Coordinates count cells of FOREST_MAX_LEVEL over the whole brick. The key
- * of a cell is (tree number, Morton index of its first corner); it orders
+ * of a cell is (tree number, Morton index of its first corner); keys order
  * leaves as p4est does. A cell of level l covers the keys
  * [key, key + morton_span(l)).
  */

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that an earlier run left in the directory of a new one.
  *
- * Every file proves by its own first words that talus wrote it: the header of a
- * table, the seal of a checkpoint, the heading of a log. HDF5 files and logs
- * that do not are taken for ours where series.csv is; pictures where `talus
- * plot` has signed them. What is somebody else's is never removed or written
- * over. */
+ * The first words of a file prove that talus wrote it: the header of a table,
+ * the seal of a checkpoint, the heading of a log. HDF5 files and logs that do
+ * not are taken for ours where series.csv is; pictures where `talus plot` has
+ * signed them. What is somebody else's is never removed or written over. */
 #ifndef TALUS_OLD_RUN_H
 #define TALUS_OLD_RUN_H
 

@@ -2,19 +2,19 @@
 /* Openings: inflow and outflow patches, and the ends of all patches, on sides
  * that a function of position divides (side_map.h).
  *
- * Grid. A leaf is divided, down to params.opening_level, the finest unless the
- * case says otherwise, if it is closer than OPENINGS_DISTANCE of its edges to
- * where boundaries meet on a side, or to an inflow or outflow that covers at
- * most half of its side. A larger one, the open air beside a jet, is the same
+ * Grid. A leaf is divided, down to params.opening_level (the finest unless the
+ * case says otherwise), if within OPENINGS_DISTANCE edges of the leaf two
+ * boundaries meet on a side, or there is an inflow or outflow that covers at
+ * most half of a side. A larger opening, the open air beside a jet, is the same
  * all over, and away from its ends a coarse face does as well; so is a side
  * that is open as a whole. The level asked for is a function of position, so
  * the grid there stays as it is. Cells at the faces alone would not do, as flow
  * converges on an outlet over a few widths (docs/notes/openings.md).
  *
- * Faces. A face that an inflow shares with others is the inflow's, and its
- * velocity is the mean sum_j part_j u_j over the parts of its area (a wall or
- * an outflow has u = 0 in it), the fraction carried in
- *   sum_j part_j u_j.n c_j / sum_j part_j u_j.n over the inflows among them;
+ * Faces. A face that an inflow shares with others belongs to the inflow. With
+ * part_j the part of the area that boundary j covers, the velocity of the face
+ * is sum_j part_j u_j, where u_j = 0 for walls and outflows, and the fraction
+ * carried in, over the inflows j, sum_j part_j u_j.n c_j / sum_j part_j u_j.n;
  * so what flows in is that of the function, W V t, on any grid. Other faces
  * belong to the patch at their centre: an outlet or a strip of a wall is as
  * wide as whole faces.

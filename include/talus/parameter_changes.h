@@ -5,11 +5,11 @@
 
 /*
  * Says `key = value (was value)` of the values that differ, one a line, on
- * stderr and in the log. Those set on the command line, now or before, carry
- * many others with them, which only the log names; if there is none of those,
- * the case was edited, and stderr has them all. For one rank.
- *   path  parameters.csv of the run so far; nothing is said if there is none
- *   now   text of the parameters.csv to come
+ * stderr and in the log. Values that follow from the command line, now or
+ * before, are many, and only the log names them; where the command line has
+ * changed nothing the case was edited, and stderr has all changes. For one
+ * rank. path  parameters.csv of the run so far; nothing is said if there is
+ * none now   text of the parameters.csv to come
  */
 void parameter_changes_say(const char *path, const char *now);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plain description of a run: what a case file says, after checking.
  *
- * `case` fills it, `flow` and `io` read it; nobody changes it during a run.
+ * `case` fills it, and everybody else reads; nothing changes during a run.
  * Units are those of the case (any consistent set). Vectors have room for
  * three components; in 2D the third is unused. Strings and functions are
  * owned by whoever made the struct (the case) and outlive the run.
@@ -79,8 +79,8 @@ enum criterion_type {
   CRITERION_FUNCTION   /* level returned by a function of position */
 };
 
-/* The phase that a criterion minds: a leaf counts when it, or a leaf beside
- * it, holds more than PARAMS_GAS of that phase. */
+/* The phase that a criterion minds: a leaf counts when the leaf itself, or one
+ * beside it, holds more than PARAMS_GAS of that phase. */
 enum criterion_phase { CRITERION_BOTH, CRITERION_GRAINS, CRITERION_GAS };
 
 struct criterion {

@@ -106,7 +106,7 @@ void plane_centroid(const double n[DIM], double alpha, double x[DIM]);
  * curved interface, where E hardly falls and n_f is worse: on a circle of 4 to
  * 60 cells its rms error is 1.2 to 2.4 times that of n_m. Where n_m itself
  * misses the stencil by more than E_r = 0.1 (2D) or 1 (3D), as in threads one
- * or two cells wide, it is no better than any, and the fit keeps them together:
+ * or two cells wide, it is no better than any, and the fit keeps threads whole:
  * the circle of the reversed vortex comes back with a third of the error. n_m
  * stays if it fits to 1e-13, if no step lowers E, or if c_0 is not in (0, 1).
  *

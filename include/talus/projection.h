@@ -5,18 +5,18 @@
  *                                         [lagree_staron_popinet_2011,
  *                                          eqs. 2.11-2.13]
  * alpha = 1/rho on faces. MAC projection: u_f* is predicted at half steps.
- * Approximate projection: u_f* is the mean momentum of the cells over their
- * density plus
- * gravity; the cells then receive the mean of (gravity - alpha grad p) of
- * their faces, so that hydrostatic balance is kept to round-off.
+ * Approximate projection: u_f* is the mean of the momentum of two cells over
+ * the mean of density, plus gravity; a cell then receives the mean over its
+ * faces of gravity - alpha grad p, so that a pressure that balances gravity
+ * does so to round-off.
  *
  * With rho_f = (rho_0 + rho_1)/2 on faces, cells to faces by mean momentum and
  * faces to cells by the plain mean are adjoint to each other in the norm
  * sum rho u^2 / 2, so on one level the approximate projection adds no energy.
- * Over levels this asks that rho_f come from the leaves, and that a coarse leaf
- * whose density varies over its virtual children lend its faces its own
- * velocity: in an interpolated one the gas next to grains would move their
- * mass.
+ * Over levels this asks that rho_f come from the leaves. A coarse leaf whose
+ * density varies over its virtual children gives faces the velocity of the
+ * leaf: with an interpolated velocity gas next to grains would move the mass of
+ * the grains.
  */
 #ifndef TALUS_PROJECTION_H
 #define TALUS_PROJECTION_H

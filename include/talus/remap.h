@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Remap: carry the fields of a grid to its next leaves, each by its rule
- * (field.h). A model adds rules of its own to those below, made of the same
- * parts.
+ * (field.h). A model may add rules to those below, made of the same parts.
  */
 #ifndef TALUS_REMAP_H
 #define TALUS_REMAP_H
@@ -40,8 +39,8 @@ double remap_mean(const struct remap *remap, const struct field *field,
 int32_t remap_box(const struct remap *remap, int32_t leaf, double lo[DIM],
                   double hi[DIM]);
 
-/* Carry the fields: those of the grid and its mesh are of the old leaves, its
- * forest has the new ones already, as `map` says. Moves leaves and data between
+/* Carry the fields of a grid. Fields and mesh still have the old leaves, the
+ * forest has the new ones, as `map` says. Moves leaves and data between
  * ranks, makes the new mesh and leaves every field with a rule valid on leaves
  * (face fields on all faces). Collective. */
 void remap_fields(struct grid *grid, const struct forest_map *map);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Run: a case from its first to its last step, with all files it leaves.
+/* Run: a case from the first to the last step, with all files that are left.
  *
  * The output directory holds series.csv, profile.csv, snapshots.xdmf with
  * snapshot-*.h5, checkpoint.h5, parameters.csv and run.log; the headers

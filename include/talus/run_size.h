@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Words on the size of a case before it is too late: leaves and memory that it
- * will take at the start (grid_size.h), and memory that the job may use
- * (capacity.h). */
+/* Words on the size of a case before it is too late: leaves and memory at the
+ * start (grid_size.h), and memory that the job may use (capacity.h). */
 #ifndef TALUS_RUN_SIZE_H
 #define TALUS_RUN_SIZE_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Seal of a file: proves that every byte of it is as it was written.
+/* Seal of a file: proves that every byte is as it was written.
  *
  * The first SEAL_LENGTH bytes are text, then zeros:
  *

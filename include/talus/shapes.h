@@ -16,11 +16,11 @@
  * is the mean of f over the piece up to third derivatives, so that the
  * curvature of the surface is felt although the cut is plane.
  *
- * f need not be a distance, and its scale does not matter. A cell is taken to
- * be all in or all out when f has one sign at its vertices and centre and is
- * at the centre at least 1.5 times as large as it varies from there to the
- * vertices: what f hides from these points (a thread thinner than the cell in
- * a function that is flat elsewhere) is not seen.
+ * f need not be a distance, and its scale does not matter. A cell counts as all
+ * in or all out when f has one sign at its vertices and centre, and f at the
+ * centre is at least 1.5 times the change from there to any vertex: what f
+ * hides from these points (a thread thinner than the cell in a function that is
+ * flat elsewhere) is not seen.
  *
  * Accuracy of c, with H = h 2^-depth the edge of the smallest piece:
  *   plane surface                      round-off, 1e-14

@@ -12,10 +12,10 @@
  * finest level, has a part for each boundary. So a face of any level has its
  * parts in a few steps.
  *
- * A side has a face of each boundary that covers it alone. A face that several
- * share is taken by the boundary at its centre, or, if one of a given set of
- * boundaries (those whose values are weighted by their parts) is among them, by
- * the one of the set with the largest part.
+ * A face that one boundary covers belongs to that boundary. A face that several
+ * share belongs to the boundary at its centre; but where boundaries of a given
+ * set (inflows, whose values are weighted by their parts) are among the
+ * several, to the one of the set with the largest part.
  */
 #ifndef TALUS_SIDE_MAP_H
 #define TALUS_SIDE_MAP_H

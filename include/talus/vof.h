@@ -9,8 +9,8 @@
  * leaf fills, cc = 1 where c > 1/2 before the first sweep, else 0. After all
  * axes the cc terms add up to cc dt div(u), zero to round-off when u_f has
  * been cleaned (clean.h): volume is kept without clipping. c stays in [0, 1]
- * for 1/2 sum |u_f| A dt / V <= 1/2. Beyond, flow that is compressed along one
- * axis within a leaf may overfill it, or empty it too much: see vof_excess.
+ * for 1/2 sum |u_f| A dt / V <= 1/2. Beyond that bound a leaf in which the flow
+ * is compressed along one axis may come out too full or too empty (vof_excess).
  *
  * c lives in cells; normals and alpha in leaves and ghosts, in units of the
  * leaf (plane.h); F on faces, m/s.

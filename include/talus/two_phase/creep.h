@@ -6,8 +6,8 @@
  * thickness H on a slope at the angle of repose alpha, tan alpha = mu_s, flows
  * down at most at
  *   u = rho g sin(alpha) H^2 / (2 eta_max)
- * on its surface: no heap of height H creeps faster. A run is slow, not at
- * rest, as long as its grains move at such a speed.
+ * on its surface: no heap of height H creeps faster. As long as grains move at
+ * such a speed a run is slow, not at rest.
  */
 #ifndef TALUS_TWO_PHASE_CREEP_H
 #define TALUS_TWO_PHASE_CREEP_H
@@ -20,7 +20,8 @@ double creep_friction(const struct params *params, double height);
 /* Return the speed above, m/s, of grains `height` m high; 0 without friction,
  * cap, gravity or height. Pure. */
 double creep_speed(const struct params *params, double height);
-/* Log it, and warn where params->rest_speed is below it. Not collective. */
+/* Log the speed of creep, and warn where params->rest_speed is lower. Not
+ * collective. */
 void creep_say(const struct params *params, double height);
 
 #endif

@@ -9,20 +9,21 @@
  *   q = -min((1 - c)/(2 dt), (U + sqrt(|g| h))/h)  in enclosed leaves,
  *   q = +(1 - c) Q  in the free gas, Q such that the integral of q vanishes,
  * carries c, its tracers and the momentum near the surface over dt. U is the
- * largest speed of the grains around: the gap closes as fast as they come, and
- * where they rest as fast as they would fall through a leaf. What a leaf gives
- * is bound by its gas less what w carries out of it, so that c stays in [0, 1].
- * Grains keep their volume to round-off; a closed box stays solvable.
+ * largest speed of the grains around: a gap closes as fast as grains come, and
+ * where grains rest, as fast as they would fall through a leaf. A leaf gives at
+ * most the gas that w leaves in it, so that c stays in [0, 1]. Grains keep
+ * their volume to round-off; a closed box stays solvable.
  *
  * Free gas: face-connected sets of leaves with c < PERCOLATION_PURE that reach
  * an open boundary; in a box without one the set of the lowest pressure that
  * has a tenth of the gas. Sets are found anew every PERCOLATION_EVERY steps, or
- * each step while there are others; else all such leaves count as free. Gas
- * of a leaf meets it if there is such a leaf in the stencil or, as at the
- * bottom of a valley, if a face neighbour with c < 1/2 has one in its own.
- * Enclosed is a leaf next to grains whose gas does not meet the free gas, whose
- * pressure is above that of the free gas, both less the weight of the gas (a
- * gap that opens is not sucked shut), and that is not at an open boundary.
+ * each step while there are sets that are not free; in other steps all leaves
+ * with c < PERCOLATION_PURE count as free. The gas of a leaf meets the free gas
+ * if a leaf of free gas is in its stencil or, as at the bottom of a valley, in
+ * that of a face neighbour with c < 1/2. A leaf is enclosed if it is next to
+ * grains, its gas does not meet the free gas, it is not at an open boundary,
+ * and its pressure is above that of the free gas, both less the weight of the
+ * gas (so a gap that opens is not sucked shut).
  *
  * The work of the weight of the grains on w is lost to the drag of the gas and
  * counts as dissipated. With the gas passing at speed w = |q| h under the

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The constant that a box without an opening leaves free in the pressure.
  *
- * Closures need the pressure itself, so the case says what it is somewhere:
+ * Closures need p, not only its gradient, so the case gives it somewhere:
  *   PRESSURE_AT_GAS    mean of p - rho_2 g.(x - Z) over leaves that hold gas
  *                      only, Z the highest corner of the box
  *   PRESSURE_AT_POINT  value at x, linear in the leaf that holds x

@@ -74,7 +74,7 @@ struct two_phase {
   struct field *eta_f, *alpha_f;     /* face viscosity, 1/density */
   struct field *gravity_f;           /* face gravity, balanced (properties.h) */
   struct field *normal[DIM], *plane; /* planes of cut leaves */
-  bool planes_hold;                  /* they are those of c as it is */
+  bool planes_hold;                  /* they are the planes of c */
   struct skin *skin;                 /* of c, none in a single phase */
   struct field *band;                /* leaves whose momentum rides with c */
   struct field *u_old[DIM];          /* u^n while u is being advanced */
@@ -103,8 +103,8 @@ struct two_phase {
   double divergence_volume; /* sum over steps of sum c div u_f dt V, m^DIM */
 };
 
-/* Make the fields of a state on a forest, which it takes over, all zero; a
- * start fills them, or a checkpoint. Collective. The caller owns the state. */
+/* Make a state of zeros on a forest, which it takes over; a start or a
+ * checkpoint then fills the fields. Collective. The caller owns the state. */
 struct two_phase *two_phase_new_on(const struct params *params,
                                    struct forest *forest);
 void two_phase_destroy(struct two_phase *sim);

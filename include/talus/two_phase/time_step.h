@@ -6,10 +6,9 @@
  *   dt <= sqrt(h/|gravity|)               of the finest leaves
  *   dt <= 1.2 (dt of the last step)
  *
- * The viscosity of grains that set off lags behind their
- * strain rate, hence the second. The third keeps waves of a surface at rest
- * stable: their height is a step ahead of their pressure, which needs w dt < 2,
- * w^2 = pi g/h.
+ * The viscosity of grains that set off lags behind their strain rate, hence the
+ * second. The third keeps waves of a surface at rest stable: the height of a
+ * wave is a step ahead of its pressure, which needs w dt < 2 with w^2 = pi g/h.
  *
  * The first two look at what the last step has left, and say nothing of a flow
  * that starts suddenly. So a step is repeated with a shorter dt where its own
@@ -29,16 +28,15 @@
 
 struct two_phase;
 
-/* Choose dt of the next step, s, at most dt_max. c goes from t^{n-1/2} to
- * t^{n+1/2}, by the mean of the last dt (0 at the start) and this one, which is
- * chosen so that where it can be both keep to the bound; *rate is that of
- * u_f, as below. Collective. */
+/* Choose dt of the next step, s, at most dt_max. c advances by the mean of the
+ * last dt (0 at the start) and this one; where possible both that mean and this
+ * dt keep to the bound. *rate is time_step_rate. Collective. */
 double time_step_choose(const struct two_phase *sim, double dt_max,
                         double *rate);
 /* Return the largest 1/2 sum |u_f| A / V, 1/s. Collective. */
 double time_step_rate(const struct two_phase *sim);
-/* Return dt if the step that was taken with it may stand, by its new u_f; else
- * a shorter one to repeat it with. Collective. */
+/* Return dt if a step of dt may stand, by the u_f that it has made; else a
+ * shorter dt to repeat the step with. Collective. */
 double time_step_allowed(const struct two_phase *sim, double dt);
 /* Return the largest speed that a boundary gives to a face, in leaves per time
  * (per_leaf) or in m/s, which a flow at rest is about to feel. This rank only.
