@@ -33,7 +33,7 @@
  * At I_tran, where f_2 = f_3, contact ends and mu has a kink; beyond I_max no
  * steady shear exists: nu, mu and p_E/p are held there.
  *
- * Tables (made in 0.2 to 0.4 s). For nu <= nu_min, f_1 = 0 and I alone decides:
+ * Tables, made once. For nu <= nu_min, f_1 = 0 and I alone decides:
  * (23) is explicit up to I_tran, and from there to I_max nu is a smooth
  * function of acosh(I_max/I), tabulated between these two ends. Where
  * p_ES counts, I < I_m = I(nu_min), nu depends on I and K/p with boundary
@@ -47,9 +47,7 @@
  * below 1e-6 of mu and nu, for any I and p (4e-6 of nu at delta = 0.2).
  * f_2 > f_3 wherever p_ES counts, or prepare refuses the parameters.
  *
- * Cost: 25 ns a cell, and 22 in slow shear alone (mu_i: 0.6); user time of
- * rheology_eval on 65536 cells, I from 1e-4 to 3 and p from 0.1 to 1e5 Pa at
- * random, gcc -O3 -march=native, AVX-512.
+ * A cell costs 40 times that of mu_i (docs/notes/closures.md).
  *
  *  [lee_huang_chiew_2015] Phys. Fluids 27 (2015) 113303,
  *    doi:10.1063/1.4935626.

@@ -103,19 +103,17 @@ void plane_centroid(const double n[DIM], double alpha, double x[DIM]);
  *   n = n_m + w (n_f - n_m),  w = max(1 - E(n_f)/E(n_m), E(n_m)/E_r) <= 1  (4)
  *
  * that is n_f for a plane, where E falls to round-off, and nearly n_m on a
- * curved interface, where E hardly falls and n_f is worse: on a circle of 4 to
- * 60 cells its rms error is 1.2 to 2.4 times that of n_m. Where n_m itself
- * misses the stencil by more than E_r = 0.1 (2D) or 1 (3D), as in threads one
- * or two cells wide, it is no better than any, and the fit keeps threads whole:
- * the circle of the reversed vortex comes back with a third of the error. n_m
- * stays if it fits to 1e-13, if no step lowers E, or if c_0 is not in (0, 1).
+ * curved interface, where E hardly falls and n_f is worse. Where n_m misses the
+ * stencil by more than E_r = 0.1 (2D) or 1 (3D), as in threads one or two cells
+ * wide, n_f keeps threads whole (docs/notes/planes.md). n_m stays if it fits to
+ * 1e-13, if no step lowers E, or if c_0 is not in (0, 1).
  *
  * Accuracy: a plane to 1e-12 radian; to 1e-6 (3D) where c_0 or 1 - c_0 is
  * below 1e-6 and known to round-off only. On a circle or sphere of radius R
  * cells the normal at the centroid of the cut is first order, so the position
  * is second order: rms 0.2/R (2D), 0.24/R to 0.36/R (3D) radian for R = 4 to
  * 64. Errors of c below 1e-4 turn a plane's normal by up to 10 (2D) or 30 (3D)
- * times their size. A call takes 0.1 to 0.25 us (2D), 0.8 to 1.4 us (3D).
+ * times their size.
  *
  * Two directions that tie to 1e-10 are averaged, and sums are paired so that
  * all axes are treated alike: a reflected stencil gives the reflected normal

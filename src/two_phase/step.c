@@ -453,7 +453,8 @@ static void add_wall_work(struct two_phase *sim, double dt) {
 
 /* Make room for the new u_f. The first solve writes into the array of u_half
  * and leaves u_f of the last step there, in case this step fails (u_f->old). A
- * repetition writes over the new u_f; returns a copy of it from before. */
+ * repetition writes over the new u_f; returns a copy of u_f from before, else
+ * NULL. */
 static const double *turn_face_velocity(struct two_phase *sim, int k) {
   double *last = sim->u_f->v;
   if (k > 0) {
