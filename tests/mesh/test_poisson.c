@@ -220,7 +220,7 @@ START_TEST(source_in_a_closed_box_is_refused) {
   solve_run(&s, 1e-8);
   ck_assert_int_eq(s.stats.status, SOLVE_INCOMPATIBLE);
   ck_assert_double_eq_tol(s.stats.residual_after, 1e-3, 1e-12);
-  solve_run(&s, 1e-2); /* small enough not to matter */
+  solve_run(&s, 1.5e-3); /* it does not matter, and is taken out */
   ck_assert_int_eq(s.stats.status, SOLVE_CONVERGED);
   s.bc[1].type = BC_DIRICHLET; /* an outlet takes it, once it is open */
   mem_free(s.alpha_f);

@@ -124,6 +124,22 @@ START_TEST(shear_rate_of_grains_is_exact_up_to_the_surface) {
 }
 END_TEST
 
+/* Both nodes of its faces are grains. */
+START_TEST(skin_lies_between_grains) {
+  double a[DIM][DIM] = {{0}}, wrong = 0;
+  struct block *b = block_new(4, 0.5, a);
+  for (int32_t k = 0; k < b->skin->n; k++) {
+    const int32_t *node = b->mesh->face_node[b->skin->face[k].face];
+    wrong += b->c[node[0]] + b->c[node[1]] != 2;
+  }
+  const double faces = mesh_sum(b->mesh, b->skin->n);
+  wrong = mesh_sum(b->mesh, wrong);
+  block_destroy(b);
+  ck_assert_double_gt(faces, 0);
+  ck_assert_double_eq(wrong, 0);
+}
+END_TEST
+
 /* Its cells have no neighbours along y that are grains: nothing bends it. */
 START_TEST(film_of_one_cell_does_not_bend) {
   double a[DIM][DIM] = {{0}};
@@ -178,6 +194,7 @@ Suite *skin_suite(void) {
   TCase *t = tcase_create("skin");
   tcase_add_test(t, grains_that_turn_feel_no_gas);
   tcase_add_test(t, shear_rate_of_grains_is_exact_up_to_the_surface);
+  tcase_add_test(t, skin_lies_between_grains);
   tcase_add_test(t, film_of_one_cell_does_not_bend);
   tcase_add_test(t, weights_cost_few_iterations);
   suite_add_tcase(suite, t);
