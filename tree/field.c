@@ -12,6 +12,18 @@ static size_t field_length(const struct field *field, const struct mesh *mesh) {
                                                 : mesh->nfaces_all);
 }
 
+/* Make an array of zeros on what is computed here; the rest waits for a fill.
+ */
+static double *new_array(const struct field *field, const struct mesh *mesh) {
+  double *v = MEM_NEW(double, field_length(field, mesh));
+  if (field->location == FIELD_CELL) {
+    mesh_touch(mesh, v);
+  } else {
+    poison(v + mesh->nfaces, mesh->nfaces_all - mesh->nfaces);
+  }
+  return v;
+}
+
 struct field *fields_add(struct fields *fields, const struct mesh *mesh,
                          const char *name, const char *unit, const char *title,
                          enum field_location location,
@@ -22,7 +34,7 @@ struct field *fields_add(struct fields *fields, const struct mesh *mesh,
   field->name = name, field->unit = unit, field->title = title;
   field->location = location, field->rule = rule;
   field->component = -1;
-  field->v = MEM_NEW(double, field_length(field, mesh));
+  field->v = new_array(field, mesh);
   fields->field[fields->n++] = field;
   return field;
 }
@@ -50,7 +62,7 @@ void fields_reset(struct fields *fields, const struct mesh *mesh) {
   for (int k = 0; k < fields->n; k++) {
     struct field *field = fields->field[k];
     if (field->on_demand) continue;
-    field->v = MEM_NEW(double, field_length(field, mesh));
+    field->v = new_array(field, mesh);
   }
 }
 
@@ -58,6 +70,14 @@ void fields_destroy(struct fields *fields) {
   fields_release(fields, true);
   for (int k = 0; k < fields->n; k++) mem_free(fields->field[k]);
   fields->n = 0;
+}
+
+void fields_touch(struct fields *fields, const struct mesh *mesh) {
+  for (int k = 0; k < fields->n; k++) {
+    struct field *field = fields->field[k];
+    if (field->restart && field->location == FIELD_CELL)
+      mesh_touch(mesh, field->v);
+  }
 }
 
 static size_t saved_length(const struct field *field, const struct mesh *mesh) {
@@ -80,6 +100,7 @@ void field_restore(struct field *field, const struct mesh *mesh) {
   CHECK(before, "field '%s' was not saved", field->name);
   if (before == field->v) return;
   memcpy(field->v, before, saved_length(field, mesh) * sizeof(double));
+  if (field->location == FIELD_CELL) mesh_touch(mesh, field->v);
 }
 
 void fields_restore(struct fields *fields, const struct mesh *mesh) {

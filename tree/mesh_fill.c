@@ -7,6 +7,7 @@
 #include "talus/error.h"
 #include "talus/mesh.h"
 #include "talus/minmax.h"
+#include "talus/poison.h"
 
 static void fill_averages(const struct mesh *mesh, double *v) {
   const int32_t n = mesh->begin_virtual - mesh->begin_average;
@@ -136,16 +137,24 @@ void mesh_fill_potential(const struct mesh *mesh, const double *rho, int n,
   fill(mesh, rho, n, v, bc, homogeneous);
 }
 
+/* Average of the finer faces of a side; poison if nobody has set one of them,
+ * as in a sweep along another axis. */
+static double mean_of_faces(const double *v, const int32_t face[NCHILD / 2]) {
+  double sum = 0;
+  for (int c = 0; c < NCHILD / 2; c++) {
+    if (POISON_ON && is_poison(&v[face[c]])) return v[face[c]];
+    sum += v[face[c]];
+  }
+  return sum / (NCHILD / 2);
+}
+
 void mesh_fill_faces(const struct mesh *mesh, int n, double *const v[]) {
   plan_run(&mesh->exchange->face, n, v, 1, false);
   const int32_t ncoarse = mesh->nfaces_all - mesh->begin_face_average;
   for (int k = 0; k < n; k++) {
     for (int32_t i = 0; i < ncoarse; i++) {
-      double sum = 0;
-      for (int c = 0; c < NCHILD / 2; c++) {
-        sum += v[k][mesh->average_face[i][c]];
-      }
-      v[k][mesh->begin_face_average + i] = sum / (NCHILD / 2);
+      v[k][mesh->begin_face_average + i] =
+          mean_of_faces(v[k], mesh->average_face[i]);
     }
   }
 }

@@ -71,6 +71,10 @@ void fields_release(struct fields *fields, bool all);
 void fields_reset(struct fields *fields, const struct mesh *mesh);
 void fields_destroy(struct fields *fields);
 
+/* Say that ghosts and helper nodes of all cell fields with restart == true are
+ * no longer valid (mesh_touch). */
+void fields_touch(struct fields *fields, const struct mesh *mesh);
+
 /* Keep all fields with restart == true (of cell fields the leaf values), and
  * set all or one of them back. The mesh must not change in between. */
 void fields_save(struct fields *fields, const struct mesh *mesh);

@@ -36,6 +36,7 @@
 #include <stdint.h>
 
 #include "talus/forest.h"
+#include "talus/poison.h"
 
 enum {
   NCHILD = 1 << DIM,
@@ -250,6 +251,15 @@ static inline double mesh_face_edges(const struct mesh *mesh, int32_t f,
  * the mesh. */
 struct mesh *mesh_new(struct forest *forest);
 void mesh_destroy(struct mesh *mesh);
+
+/* Say that leaf values of a cell array [ncells] have been written, so that its
+ * ghosts and helper nodes are no longer valid: whoever writes leaves of an
+ * array that others fill and read calls it. Debug builds poison them
+ * (poison.h), to stop a stage that reads nodes it has not filled; release
+ * builds do nothing. */
+static inline void mesh_touch(const struct mesh *mesh, double *v) {
+  poison(v + mesh->nleaves, mesh->ncells - mesh->nleaves);
+}
 
 /* Fill ghosts and helper nodes of n cell arrays from their leaves. v[k]
  * [ncells]; bc[k] [MESH_MAX_PATCHES] holds the conditions; homogeneous: their

@@ -151,4 +151,5 @@ void advection_momentum(const struct mesh *mesh, double dt,
       out[e][i] -= dt / mesh_width(mesh, i) * sum;
     }
   }
+  for (int e = 0; e < DIM; e++) mesh_touch(mesh, out[e]);
 }

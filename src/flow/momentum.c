@@ -104,4 +104,5 @@ void momentum_update(const struct mesh *mesh, int d, double dt,
                   dilation * (u_start[e][i] - u[e][i]));
     }
   }
+  for (int e = 0; e < DIM; e++) mesh_touch(mesh, u[e]);
 }

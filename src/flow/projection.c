@@ -71,4 +71,5 @@ void projection_acceleration(const struct projection *projection, double *face,
       g[d][i] = mesh_mean_along(mesh, face, i, d);
     }
   }
+  for (int d = 0; d < DIM; d++) mesh_touch(mesh, g[d]);
 }

@@ -21,6 +21,7 @@ void side_walls_drag(const struct mesh *mesh, const struct side_walls *walls,
     const double speed = max2(slides, speed_of(state->u_old, i));
     drag[i] = force / max2(speed, creep);
   }
+  mesh_touch(mesh, drag);
 }
 
 double side_walls_power(const struct mesh *mesh, const double *drag,

@@ -32,6 +32,7 @@ void vof_reconstruct(const struct mesh *mesh, const double *c,
   }
   double *v[DIM + 1] = {alpha};
   for (int d = 0; d < DIM; d++) v[d + 1] = normal[d];
+  for (int k = 0; k < DIM + 1; k++) mesh_touch(mesh, v[k]);
   mesh_fill_ghosts(mesh, DIM + 1, v);
 }
 
@@ -98,6 +99,7 @@ void vof_update(const struct mesh *mesh, int d, double dt, const double *u_f,
             (mesh_net_along(mesh, flux, i, d) -
              cc[i] * mesh_net_along(mesh, u_f, i, d));
   }
+  mesh_touch(mesh, c);
 }
 
 double vof_excess(const struct mesh *mesh, const double *c) {

@@ -33,6 +33,7 @@ static void remove_dilation(const struct two_phase *sim, double dt,
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     c[i] -= cc[i] * dt * source[i];
   }
+  mesh_touch(sim->grid.mesh, c);
 }
 
 /* Sweep a tracer (or c), which is filled, along d. */
@@ -217,6 +218,7 @@ void fractions_advance(struct two_phase *sim, double dt, double rate) {
 static void set_back(struct two_phase *sim) {
   memcpy(sim->c->v, sim->c_before,
          (size_t)sim->grid.mesh->nleaves * sizeof(double));
+  mesh_touch(sim->grid.mesh, sim->c->v);
 }
 
 void fractions_synchronise(struct two_phase *sim) {
@@ -251,5 +253,6 @@ void fractions_read_tracer(struct two_phase *sim, int k, double *value) {
     advance_tracer(sim, 0.5 * sim->model.dt, sim->u_f->v, NULL, tracer);
   memcpy(value, tracer->v, (size_t)n * sizeof(double));
   memcpy(tracer->v, before, (size_t)n * sizeof(double));
+  mesh_touch(sim->grid.mesh, tracer->v);
   mem_free(before);
 }

@@ -127,4 +127,5 @@ void pressure_level_set(struct two_phase *sim) {
   }
   const double shift = params->pressure_level - now;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) sim->p->v[i] += shift;
+  mesh_touch(sim->grid.mesh, sim->p->v);
 }

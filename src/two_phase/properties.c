@@ -31,6 +31,7 @@ void properties_density(const struct mesh *mesh, const double density[2],
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     rho[i] = density[1] + unit_range(c[i]) * (density[0] - density[1]);
   }
+  mesh_touch(mesh, rho);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
     const double c_f = face_fraction(mesh, c, f);

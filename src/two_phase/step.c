@@ -190,6 +190,7 @@ static void update_acceleration(struct two_phase *sim) {
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       if (sim->c->v[i] > HOLDS_GRAINS) sim->g[e]->v[i] = g[e][i];
     }
+    mesh_touch(sim->grid.mesh, sim->g[e]->v);
   }
   scratch_give(&sim->scratch, __func__);
 }
@@ -389,6 +390,7 @@ static void diffuse_momentum(struct two_phase *sim, double dt) {
       viscous_g[i] = (u[e][i] - viscous_g[i] + lost) / dt;
       u[e][i] -= dt * sim->g[e]->v[i];
     }
+    mesh_touch(mesh, viscous_g), mesh_touch(mesh, u[e]);
   }
   scratch_give(&sim->scratch, __func__);
   if (sim->drag) scratch_give(&sim->scratch, "mass");
@@ -409,6 +411,7 @@ static void repeat_properties(struct two_phase *sim, int k,
   for (int e = 0; e < DIM; e++) {
     double *u = sim->u[e]->v;
     memcpy(k > 0 ? u : advected[e], k > 0 ? advected[e] : u, bytes);
+    mesh_touch(sim->grid.mesh, k > 0 ? u : advected[e]);
   }
   if (k == sim->params->picard) scratch_give(&sim->scratch, "advected");
 }
@@ -483,6 +486,7 @@ static void project(struct two_phase *sim, double dt, int k) {
   end_projection(sim);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * g[e][i];
+    mesh_touch(mesh, u[e]);
   }
   measure_repetition(sim, k, last);
 }
@@ -501,6 +505,7 @@ static void set_cell_viscosity(struct two_phase *sim) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     sim->eta->v[i] = mesh_mean(mesh, sim->eta_f->v, i);
   }
+  mesh_touch(mesh, sim->eta->v);
 }
 
 /* Add how many cells the surface, or the flow, may have moved. */
@@ -623,6 +628,7 @@ static double find_step(struct two_phase *sim, double dt_max) {
 
 int step_advance(struct two_phase *sim, double dt_max) {
   stopwatch_start(&sim->model.stopwatch);
+  fields_touch(&sim->grid.fields, sim->grid.mesh); /* invariant 1 */
   const double dt = find_step(sim, dt_max);
   const char *taker = scratch_taker(&sim->scratch);
   CHECK(!taker, "%s has not given its scratch back", taker);

@@ -260,6 +260,55 @@ START_TEST(every_face_joins_its_neighbours) {
 }
 END_TEST
 
+/* Poisoned values among [begin, end). */
+static int32_t count_poison(const double *v, int32_t begin, int32_t end) {
+  int32_t n = 0;
+  for (int32_t i = begin; i < end; i++) n += is_poison(&v[i]);
+  return n;
+}
+
+/* In debug builds; else nothing is. */
+START_TEST(nodes_are_poison_from_a_write_to_the_next_fill) {
+  struct forest *forest =
+      grid_new(MPI_COMM_WORLD, 2, false, kLevels[_i][0], kLevels[_i][1]);
+  struct mesh *mesh = mesh_new(forest);
+  const struct bc bc[MESH_MAX_PATCHES] = {{0}}, *bcs[] = {bc};
+  double *v = MEM_NEW(double, mesh->ncells);
+  bool good = true;
+  for (int k = 0; k < 2; k++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) v[i] = linear(mesh->x[i]) + k;
+    mesh_touch(mesh, v);
+    good = good && count_poison(v, 0, mesh->nleaves) == 0;
+    good = good && count_poison(v, mesh->nleaves, mesh->ncells) ==
+                       (POISON_ON ? mesh->ncells - mesh->nleaves : 0);
+    mesh_fill(mesh, 1, &v, bcs, false);
+    good = good && count_poison(v, 0, mesh->ncells) == 0;
+  }
+  ck_assert(all_ranks(good));
+  mem_free(v);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
+/* The traps, which would end the test, are off. */
+START_TEST(who_reads_nodes_not_filled_gets_no_number) {
+  struct forest *forest =
+      grid_new(MPI_COMM_WORLD, 2, false, kLevels[_i][0], kLevels[_i][1]);
+  struct mesh *mesh = mesh_new(forest);
+  double *v = MEM_NEW(double, mesh->ncells), sum = 0;
+  mesh_touch(mesh, v);
+  const bool trapped = base_trap_floating_point(false);
+  for (int32_t f = 0; f < mesh->nfaces; f++) sum += mesh_gradient(mesh, v, f);
+  const bool wild = sum != sum;
+  base_trap_floating_point(trapped);
+  ck_assert(all_ranks(wild == POISON_ON));
+  mem_free(v);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+}
+END_TEST
+
 Suite *mesh_suite(void);
 Suite *mesh_suite(void) {
   Suite *suite = suite_create("mesh");
@@ -273,6 +322,8 @@ Suite *mesh_suite(void) {
   tcase_add_loop_test(tc, gradients_across_faces_are_exact_for_linear_fields, 0,
                       n);
   tcase_add_loop_test(tc, every_face_joins_its_neighbours, 0, n);
+  tcase_add_loop_test(tc, nodes_are_poison_from_a_write_to_the_next_fill, 0, n);
+  tcase_add_loop_test(tc, who_reads_nodes_not_filled_gets_no_number, 0, n);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
   return suite;

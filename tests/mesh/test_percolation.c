@@ -77,6 +77,7 @@ static struct effect percolate(const struct params *params, int calls,
   const double volume = integral(sim->grid.mesh, sim->c->v);
   double *start = MEM_NEW(double, sim->grid.mesh->nleaves);
   memcpy(start, sim->c->v, (size_t)sim->grid.mesh->nleaves * sizeof *start);
+  field_fill(sim->grid.mesh, sim->band); /* no momentum rides with c */
   for (int k = 0; k < calls; k++) {
     percolation_advance(sim, dt);
     sim->model.step++;

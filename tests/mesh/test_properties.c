@@ -162,6 +162,7 @@ static struct mixture mixture_new(struct bench *b) {
   struct field *normal[DIM];
   bench_vector(b, names, normal);
   field_arrays(normal, m.normal);
+  field_fill(b->mesh, m.p); /* 0 where a test sets nothing else */
   return m;
 }
 
