@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Faces. A face belongs to the finer of its leaves, at equal level to the
- * lower one, on a boundary to the only one; its rank computes it. */
+/* Faces. A face belongs to the finer of two leaves, at equal level to the lower
+ * one, on a boundary to the only one; the rank of that leaf computes the face.
+ */
 #include "builder.h"
 #include "talus/error.h"
 #include "talus/memory.h"

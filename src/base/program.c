@@ -51,12 +51,11 @@ static void report_leaks(void) {
 #endif
 }
 
-/* Tell Open MPI that nobody will ask for further processes. Started without a
- * launcher, it forks a daemon to spawn further processes from, and waits for
- * networks to answer, unless told that nobody will ask for either. All such
- * processes of a user make and remove the same directory for themselves, and
- * one in some hundred of those that start at the same time fails as another
- * removes it: none is needed. What the user has set stands. */
+/* Tell Open MPI that nobody will ask for further processes or for networks.
+ * Else, without a launcher, it forks a daemon to spawn processes, and waits for
+ * networks to answer. All daemons of a user make and remove the same directory,
+ * and one in some hundred that start at the same time fails as another removes
+ * the directory. Settings of the user stand. */
 static void expect_no_others(void) {
   if (launcher_rank() != NULL) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);

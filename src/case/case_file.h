@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Private to src/case: the case while it is read, and the calls its parts make
- * on each other.
+ * Private to src/case: the case while it is read, and what its files offer each
+ * other.
  *
- * Convention: functions that read a value find it on top of the Lua stack and
- * take it off. `path` is the name of that value for people, "domain.size".
+ * Convention: a function that reads a value takes it off the top of the Lua
+ * stack. `path` is the name of the value for people, "domain.size".
  * Anything wrong ends in USER_ERROR.
  */
 #ifndef TALUS_CASE_CASE_FILE_H

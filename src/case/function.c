@@ -72,8 +72,8 @@ static void call(struct case_function *function, const double x[3]) {
   if (error != NULL) function_fail(function, x, "fails: %s", error);
 }
 
-/* Refuse a function that depends on more than its arguments: on other ranks,
- * which ask at other points, it is another one. */
+/* Refuse a function that depends on more than its arguments: other ranks, which
+ * ask at other points, would have another function. */
 static void check_again(struct case_function *function, const double x[3],
                         double first, double second) {
   if (first == second) return;

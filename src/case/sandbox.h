@@ -34,8 +34,8 @@ void sandbox_set_loud(struct sandbox *sandbox, int loud);
 
 bool sandbox_is_loud(lua_State *L);
 
-/* Count work that C code does for the case as so many of its instructions. Ends
- * in a Lua error if it has used up those that it may use, or its time. */
+/* Count work that C code does for the case as so many instructions. Ends in a
+ * Lua error if the case has used up its instructions or its time. */
 void sandbox_charge(lua_State *L, double instructions);
 /* Tell if a call has used up its time, which other ranks may not have. */
 bool sandbox_was_late(const struct sandbox *sandbox);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Where in the text of a case a key is set, for messages.
+ * Places in the text of a case where keys are set, for messages.
  *
  * Lua forgets where a table came from, so the text is searched for `key =`,
- * inside the braces of the keys above it where those can be found. This can
- * miss (a table filled in a loop) but costs nothing else.
+ * inside the braces of the keys above where these can be found. The search can
+ * miss (a table filled in a loop) but does no harm.
  */
 #ifndef TALUS_CASE_SOURCE_H
 #define TALUS_CASE_SOURCE_H

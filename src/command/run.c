@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order of things within a step: advance, row of series.csv, outline,
  * snapshot, checkpoint, stop. A checkpoint so comes after all rows up to its
- * time, and a restart keeps just those rows. What is due follows from step and
- * time alone, so a run in pieces writes what one in one piece does. */
+ * time, and a restart keeps just those rows. Step and time alone decide what is
+ * due, so a run in pieces writes the same files as a run in one piece. */
 #include "talus/run.h"
 
 #include <inttypes.h>
@@ -415,8 +415,8 @@ static const char *reason_to_stop(const struct run *run,
   return NULL;
 }
 
-/* Take one step, its clock set to the event it was meant to reach. *taken is
- * how it began. */
+/* Take one step; if it reaches the next event, up to round-off, the time
+ * becomes that of the event. *taken tells how the step began. */
 static int advance(struct run *run, struct step_taken *taken) {
   struct model *model = run->model;
   double begin = MPI_Wtime(), event = next_event(run);

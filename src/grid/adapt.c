@@ -46,8 +46,8 @@ struct wanted {
   double *mark;   /* [ncells] scratch */
 };
 
-/* Confine a criterion to the leaves that hold its phase and to those beside
- * them; leaves up to HYSTERESIS farther away it may keep. c is filled. */
+/* Confine a criterion to leaves that hold its phase and to their neighbours; up
+ * to HYSTERESIS leaves farther away it may keep leaves. c is filled. */
 static void confine(struct wanted *wanted, enum criterion_phase only) {
   const struct mesh *mesh = wanted->grid->mesh;
   double *mark = wanted->mark;

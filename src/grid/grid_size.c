@@ -69,8 +69,8 @@ static int sample_count(const struct walk *walk) {
   return n;
 }
 
-/* Does the shape reach into the box, does it leave a part of it? A box within
- * one that was found bare is not searched. */
+/* Find out whether the shape reaches into the box (*some), and leaves a part of
+ * the box (*others). A box within one that was found bare is not searched. */
 static void look_for_grains(const struct walk *walk, struct cell *cell,
                             double width, bool *some, bool *others) {
   const struct function *shape = &walk->params->shape;
@@ -90,10 +90,10 @@ static void look_for_grains(const struct walk *walk, struct cell *cell,
   if (!*some) cell->bare = width;
 }
 
-/* Return how far from a region of level `finest` cells of this level are
- * divided, in cells of this level, if those of level finest - 1 are within so
- * many finest `cells` of it. 2:1 balance divides what touches a divided cell
- * one level finer, which reaches 1/2 to 1 of its size beyond that distance. */
+/* Return the distance from a region of level `finest` up to which cells of the
+ * present level are divided, in such cells; on level finest - 1 the distance is
+ * `cells` of the finest. 2:1 balance divides the neighbours of divided cells,
+ * and so reaches farther by 1/2 to 1 of a cell on every level. */
 static double reach(const struct walk *walk, int finest, double cells) {
   double r = 0.5 * cells;
   for (int l = finest - 2; l >= walk->level; l--) r = 0.5 * (r + 0.75);

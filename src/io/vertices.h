@@ -7,11 +7,11 @@
 
 #include "talus/mesh.h"
 
-/* They are numbered in the order in which a walk over the leaves, and over the
- * corners x + 2 y + 4 z of each, meets them. */
+/* Vertices are numbered in the order in which a walk over the leaves, and over
+ * the corners x + 2 y + 4 z of each, meets them. */
 struct vertices {
   int64_t n;               /* of this rank */
-  int64_t first;           /* those of the ranks before it */
+  int64_t first;           /* vertices of the ranks before */
   int32_t (*cell)[NCHILD]; /* [nleaves] vertex at each corner, of this rank */
 };
 

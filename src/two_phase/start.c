@@ -11,8 +11,8 @@
 #include "talus/two_phase/step.h"
 #include "talus/vof.h"
 
-/* How far shapes are divided to measure them, in levels below the finest of
- * the grid: not at all to see where they are, to adapt the grid to them. */
+/* Levels below the finest of the grid to which shapes are divided to be
+ * measured: none to see where a shape is, while the grid is adapted. */
 enum fineness { FINENESS_ROUGH = 0, FINENESS_FINAL = 3 };
 
 /* A state that is being made. */
@@ -21,7 +21,7 @@ struct beginning {
   const struct model_start *start;
 };
 
-/* Say, every so many leaves of a loop over them, how far it is. */
+/* Say, every so many leaves of a loop, how far the loop is. */
 static void tell(const struct beginning *beginning, const char *what,
                  int32_t i) {
   enum { EVERY = 256 };

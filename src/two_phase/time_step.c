@@ -10,11 +10,11 @@
 #define DT_GROWTH 1.2
 /* dt is at most this times sqrt(h/|g|) of grains that set off. */
 #define DT_ACCELERATION 0.1
-/* A step that makes up for a last one too long is at least this part of the
- * bound. */
+/* After a step that was too long the next is at least this part of the bound.
+ */
 #define DT_SHRINK 0.2
-/* A step that was too long for what it has found is repeated with this part of
- * what its acceleration allows, but not with less than the second of dt. */
+/* A step too long for the flow it finds is repeated with DT_REPEAT times the dt
+ * that the acceleration allows, and at least DT_LEAST times its dt. */
 #define DT_REPEAT 0.7
 #define DT_LEAST 0.01
 
