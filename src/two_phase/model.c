@@ -38,7 +38,7 @@ static struct model *model_of(struct two_phase *sim) {
 
 static struct model *start(const struct params *params,
                            const struct model_start *start) {
-  return model_of(two_phase_new_told(params, start));
+  return model_of(two_phase_new(params, start));
 }
 
 static struct model *resume(const struct params *params,

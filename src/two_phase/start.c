@@ -139,8 +139,8 @@ void two_phase_refine_openings(struct two_phase *sim) {
   openings_check(grid);
 }
 
-struct two_phase *two_phase_new_told(const struct params *params,
-                                     const struct model_start *start) {
+struct two_phase *two_phase_new(const struct params *params,
+                                const struct model_start *start) {
   struct forest_layout layout;
   grid_layout(params, &layout);
   const int level =
@@ -164,9 +164,4 @@ struct two_phase *two_phase_new_told(const struct params *params,
   tell(&beginning, "pressure at rest", 0);
   step_start(sim);
   return sim;
-}
-
-struct two_phase *two_phase_new(const struct params *params) {
-  const struct model_start start = {.most_leaves = 0};
-  return two_phase_new_told(params, &start);
 }

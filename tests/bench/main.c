@@ -19,7 +19,6 @@
 #include "talus/hierarchy.h"
 #include "talus/poisson.h"
 #include "talus/program.h"
-#include "talus/two_phase/start.h"
 #include "talus/viscous.h"
 
 struct result {
@@ -137,7 +136,7 @@ static struct result time_adaptation(int level, int calls) {
   struct body body = {{0.4, 0.5, 0.5}, 0.25};
   params.shape = (struct function){ball, &body};
   params_follow_surface(&params, level - 3, 3);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   struct result result = {.leaves = forest_nleaves_global(sim->grid.forest)};
   for (int k = 0; k < calls; k++) {
     body.centre[0] += 0.5 / (1 << level);

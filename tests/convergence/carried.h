@@ -7,7 +7,6 @@
 #include "../mesh/transport.h"
 #include "report.h"
 #include "runs.h"
-#include "talus/two_phase/start.h"
 
 /* A flow that brings a shape back to its place: velocity(d, x, h), times a
  * factor of time. */
@@ -142,7 +141,7 @@ static inline double carried_run(const struct carried_flow *flow, int level,
   params.shape = (struct function){flow->shape, flow->context};
   for (int d = 0; d < DIM; d++) params.origin[d] = flow->origin;
   if (adapted) params_follow_surface(&params, 3, 3);
-  struct carried c = {.flow = flow, .sim = two_phase_new(&params)};
+  struct carried c = {.flow = flow, .sim = sim_start(&params)};
   carried_set_faces(&c);
   carried_shape(&c, c.sim->c->v);
   c.volume = integral(c.sim->grid.mesh, c.sim->c->v);

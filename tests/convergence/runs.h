@@ -10,7 +10,6 @@
 
 #include "../mesh/sim.h"
 #include "talus/case.h"
-#include "talus/two_phase/start.h"
 
 /* An example of the manual under way. */
 struct example {
@@ -38,7 +37,7 @@ static inline struct example example_new(const char *name, const char *format,
   CHECK(text, "cannot read %s: start this from the root of the checkout", path);
   struct example example = {.file = case_load_text(path, text, n, override)};
   mem_free(text);
-  example.sim = two_phase_new(case_params(example.file));
+  example.sim = sim_start(case_params(example.file));
   return example;
 }
 

@@ -17,7 +17,6 @@
 #include "report.h"
 #include "runs.h"
 #include "talus/advection.h"
-#include "talus/two_phase/start.h"
 
 static const double kWave = 6.283185307179586, kMean[] = {1, 0.5}, kSize = 0.5;
 static int kAxis[] = {0, 1};
@@ -55,7 +54,7 @@ static double vortex_error(int level, bool adapted, enum limiter limiter) {
                            .level = level,
                            .function = {in_ball, &params.level_max}};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const bool good = run_to(sim, end);
   double *error = MEM_NEW(double, sim->grid.mesh->nleaves);
   at[0].time = sim->model.time;
@@ -104,7 +103,7 @@ static double strip_excess(enum limiter limiter) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){strip, &kAxis[d]};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   bool good = true;
   while (good && sim->model.time < 1) {
     good = step_advance(sim, 1 - sim->model.time) == EXIT_DONE;

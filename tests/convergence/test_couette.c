@@ -27,7 +27,6 @@
 #include "report.h"
 #include "systems.h"
 #include "talus/two_phase/properties.h"
-#include "talus/two_phase/start.h"
 #include "talus/viscous.h"
 #include "talus/vof.h"
 
@@ -63,7 +62,7 @@ static struct params layers(double *interface, double density_soft) {
 static void couette_errors(double part, double density_soft, double error[2]) {
   double interface = (7 + part) / (1 << LEVEL);
   const struct params params = layers(&interface, density_soft);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const bool good = run_steady(sim, 1e-11, params.stop);
   error[0] = error[1] = good ? 0 : NAN;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves && good; i++) {

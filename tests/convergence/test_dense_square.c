@@ -23,7 +23,6 @@
 #include "../mesh/transport.h"
 #include "report.h"
 #include "runs.h"
-#include "talus/two_phase/start.h"
 
 static const double kBox = 4, kTravel = 3;
 static struct body start = {{1, 2}, 0.5};
@@ -101,7 +100,7 @@ static double shape_error(struct two_phase *sim, const struct track *to) {
 static void run_ratio(struct report *report, const char *grid, double ratio,
                       double eta_gas) {
   const struct params params = dense_square(ratio, eta_gas);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   struct track from, now = {0, {start.centre[0], start.centre[1]}};
   bool good = true;
   double speed = NAN, fastest = 0;

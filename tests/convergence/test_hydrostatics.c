@@ -8,7 +8,6 @@
  */
 #include "report.h"
 #include "runs.h"
-#include "talus/two_phase/start.h"
 
 enum { FIRST = 4, N = 3, STEPS = 1000 };
 static const double kDepth = 0.53, kStep = 0.05;
@@ -43,7 +42,7 @@ static void rest(int level, bool adapted, struct bed *bed, double most[2]) {
                            .level = level,
                            .function = {strip, &params.level_max}};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   bool good = true;
   most[0] = most[1] = 0;
   for (int k = 0; k < STEPS && good; k++) {

@@ -11,7 +11,6 @@
 
 #include "report.h"
 #include "runs.h"
-#include "talus/two_phase/start.h"
 
 static const char kJet[] =
     "local W, level = param('W', 0.25), param('level', 6)\n"
@@ -36,7 +35,7 @@ static double jet_error(double width, int level) {
   snprintf(words[0], sizeof words[0], "W=%.17g", width);
   snprintf(words[1], sizeof words[1], "level=%d", level);
   struct case_file *file = case_load_text("jet.lua", kJet, 2, override);
-  struct two_phase *sim = two_phase_new(case_params(file));
+  struct two_phase *sim = sim_start(case_params(file));
   double most = 0;
   while (sim->model.time < 2 * (1 - 1e-12) && isfinite(most)) {
     if (step_advance(sim, 2 - sim->model.time) != EXIT_DONE) most = NAN;

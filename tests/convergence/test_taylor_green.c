@@ -17,7 +17,6 @@
  * seen from grid to grid. */
 #include "report.h"
 #include "runs.h"
-#include "talus/two_phase/start.h"
 
 static const double kWave = 6.283185307179586, kEnd = 0.4, kThin = 0.01;
 static int kAxis[] = {0, 1};
@@ -64,7 +63,7 @@ static double space_error(int level, bool adapted) {
                            .level = level,
                            .function = {rectangle, &params.level_max}};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double dt = 0.4 / (1 << level);
   bool good = true;
   while (good && sim->model.time < kEnd - 1e-12) {
@@ -88,7 +87,7 @@ static double *crossed_run(int level, double viscosity, double time,
                            int steps) {
   struct params params = flow(level, viscosity, crossed);
   params.tolerance_pressure = params.tolerance_viscous = 1e-10;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double dt = time / steps;
   bool good = true;
   for (int k = 0; k < steps && good; k++) {

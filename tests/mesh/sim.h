@@ -6,6 +6,8 @@
 
 #include "bench.h"
 #include "talus/adapt.h"
+#include "talus/model.h"
+#include "talus/two_phase/start.h"
 #include "talus/two_phase/state.h"
 #include "talus/two_phase/step.h"
 
@@ -94,7 +96,13 @@ static inline void sim_fill(struct two_phase *sim) {
   }
 }
 
-/* Make a state as two_phase_new, on a communicator, with face velocities the
+/* Make the initial state of a case as a run does, but nobody is told. */
+static inline struct two_phase *sim_start(const struct params *params) {
+  const struct model_start start = {.most_leaves = 0};
+  return two_phase_new(params, &start);
+}
+
+/* Make a state as sim_start, on a communicator, with face velocities the
  * means of the cells'. The grid follows the criteria. */
 static inline struct two_phase *sim_new(const struct params *params,
                                         MPI_Comm comm) {

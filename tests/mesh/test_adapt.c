@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/adapt.h"
-#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -29,7 +28,7 @@ static double distance(const struct mesh *mesh, int32_t i) {
 
 START_TEST(the_surface_lies_in_a_band_of_the_finest_level) {
   const struct params params = drop_params();
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const struct mesh *mesh = sim->grid.mesh;
   const double h = 1.0 / (1 << FINE);
   bool band = true, wide = true;
@@ -61,7 +60,7 @@ START_TEST(everything_inside_takes_its_level) {
   params.shape.context = &body;
   params.criterion[params.ncriteria++] =
       (struct criterion){.type = CRITERION_INSIDE, .level = FINE - 1};
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   bool good = true;
   double deep = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
@@ -94,7 +93,7 @@ START_TEST(a_function_of_position_sets_the_level) {
       (struct criterion){.type = CRITERION_FUNCTION,
                          .level = FINE,
                          .function = {left_is_fine, NULL}};
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   bool good = true;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const int level = sim->grid.mesh->level[i];
@@ -120,7 +119,7 @@ START_TEST(the_estimate_finds_a_jump_of_velocity) {
   params.boundary[0].type = params.boundary[1].type = BOUNDARY_SLIP;
   params.criterion[params.ncriteria++] = (struct criterion){
       .type = CRITERION_ESTIMATE, .level = FINE, .threshold = 0.02};
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   bool good = sim->grid.mesh->level_finest == FINE;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double away = fabs(sim->grid.mesh->x[i][0] - 0.5);
@@ -258,7 +257,7 @@ START_TEST(a_second_adaptation_changes_nothing) {
     params.criterion[params.ncriteria++] =
         (struct criterion){.type = CRITERION_INSIDE, .level = FINE - 1};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const bool changed = two_phase_adapt(sim);
   two_phase_destroy(sim);
   ck_assert(!changed);
@@ -301,7 +300,7 @@ static void move(struct two_phase *sim, double leaves) {
  * is no longer near it is merged again. */
 START_TEST(the_band_follows_the_surface) {
   const struct params params = drop_params();
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double volume = integral(sim->grid.mesh, sim->c->v);
   const double before = (double)forest_nleaves_global(sim->grid.forest);
   int rounds = 0;
@@ -334,7 +333,7 @@ END_TEST
  * leaves at first, then for nothing more. */
 START_TEST(a_trembling_surface_leaves_the_grid_alone) {
   const struct params params = drop_params();
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   bool changed = false;
   for (int k = 1; k <= 6; k++) {
     struct body body = drop;

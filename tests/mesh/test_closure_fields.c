@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fields for output: shear rate and what the closure knows of the grains. */
 #include "talus/two_phase/closure_fields.h"
-#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -48,7 +47,7 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
   params.grains.rheology = lee_huang();
   params.shape = (struct function){below, &height};
   if (_i) params_follow_surface(&params, 2, 1);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const int n = sim->nknown;
   double wrong_rate = 0, wrong[8] = {0}, gas = 0, cells = 0;
   set_shear(sim);
@@ -112,7 +111,7 @@ START_TEST(the_mean_shear_rate_is_that_of_the_grains) {
   params.shape = (struct function){below, &height};
   params.boundary[0].type = params.boundary[1].type = BOUNDARY_PERIODIC;
   params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   set_shear(sim);
   const double mean = closure_fields_shear_rate(sim);
   two_phase_destroy(sim);

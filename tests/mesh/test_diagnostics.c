@@ -2,7 +2,6 @@
 /* Droplets, outline, energies: against what is known exactly. */
 #include "talus/remap.h"
 #include "talus/two_phase/measure.h"
-#include "talus/two_phase/start.h"
 #include "talus/vof.h"
 
 #include <check.h>
@@ -368,7 +367,7 @@ static struct params layered_params(void) {
  * row of cells. */
 START_TEST(layers_add_up_to_the_heap) {
   const struct params params = layered_params();
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   struct diagnostics d;
   double apart[2] = {0}, gap = 0, volume = 0, moved = 0;
   for (int k = 0; k < 24; k++) step_advance(sim, 1);

@@ -7,7 +7,6 @@
 
 #include "sim.h"
 #include "talus/error.h"
-#include "talus/two_phase/start.h"
 
 /* Describe grains and a tracer in a corner of the box. */
 static struct params state_params(void) {
@@ -34,7 +33,7 @@ static bool is_seen(struct field *field, struct two_phase *sim, double value) {
 START_TEST(every_field_of_the_state_is_looked_at) {
   static const double WILD[] = {NAN, INFINITY, -INFINITY};
   struct params p = state_params();
-  struct two_phase *sim = two_phase_new(&p);
+  struct two_phase *sim = sim_start(&p);
   bool good = step_advance(sim, 1) == EXIT_DONE;
   const bool trapped = base_trap_floating_point(false);
   int n = 0;
@@ -54,7 +53,7 @@ END_TEST
 /* In a leaf in the midst of grains, where no surface passes. */
 START_TEST(a_nan_in_a_tracer_ends_the_run) {
   struct params p = state_params();
-  struct two_phase *sim = two_phase_new(&p);
+  struct two_phase *sim = sim_start(&p);
   int status = step_advance(sim, 1);
   ck_assert_int_eq(status, EXIT_DONE);
   const bool trapped = base_trap_floating_point(false);

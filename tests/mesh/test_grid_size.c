@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/grid_size.h"
-#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -15,7 +14,7 @@ enum { FINE = DIM == 2 ? 8 : 5 };
 /* Estimate over the leaves of the grid as it is made. */
 static double ratio(const struct params *params) {
   const double estimate = grid_size_leaves(params);
-  struct two_phase *sim = two_phase_new(params);
+  struct two_phase *sim = sim_start(params);
   const double leaves = (double)forest_nleaves_global(sim->grid.forest);
   two_phase_destroy(sim);
   return estimate / leaves;

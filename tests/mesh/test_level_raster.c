@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/level_raster.h"
-#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -29,7 +28,7 @@ START_TEST(criterion_of_position_misses_nothing) {
       (struct criterion){.type = CRITERION_FUNCTION,
                          .level = FINE,
                          .function = {spot, &depth[_i]}};
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   double found = 0, coarsest = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     double x[3] = {0};

@@ -129,7 +129,7 @@ START_TEST(volume_is_that_of_the_jet) {
   params.level_max = params.criterion[0].level = params.opening_level =
       FINE - 2;
   params.tolerance_pressure = params.tolerance_viscous = 1e-4;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   bool good = true;
   for (int k = 0; k < 8; k++) {
     good = good && step_advance(sim, 1) == EXIT_DONE;
@@ -166,7 +166,7 @@ START_TEST(two_inflows_share_a_face) {
 END_TEST
 
 /* An outlet of a few of the finest faces in a wall is there on the grid that
- * two_phase_new makes of coarse leaves, and stays. */
+ * a start makes of coarse leaves, and stays. */
 START_TEST(narrow_outlet_is_on_the_finest_level) {
   const double h = 1.0 / (1 << FINE);
   struct opening opening = {0.5, 0.5 + 3 * h, NULL};
@@ -211,7 +211,7 @@ START_TEST(large_opening_is_fine_at_its_ends) {
   struct params params =
       opening_params(&opening, BOUNDARY_INFLOW, BOUNDARY_OUTFLOW);
   follow(&params);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const struct mesh *mesh = sim->grid.mesh;
   double coarsest[2] = {0};
   for (int32_t f = 0; f < mesh->nfaces; f++) {

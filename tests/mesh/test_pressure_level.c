@@ -2,7 +2,6 @@
 /* A closed box behaves as one that is open on top, in pressure at rest and in
  * what friction makes of a column that collapses. */
 #include "talus/two_phase/pressure_level.h"
-#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -43,7 +42,7 @@ START_TEST(gas_in_a_closed_box_has_the_pressure_of_an_open_one) {
   bool done = true;
   for (int closed = 0; closed < 2; closed++) {
     struct params params = still_params(closed);
-    struct two_phase *sim = two_phase_new(&params);
+    struct two_phase *sim = sim_start(&params);
     for (int k = 0; k < 3; k++) {
       done = done && step_advance(sim, 0.01) == EXIT_DONE;
     }
@@ -69,7 +68,7 @@ START_TEST(a_point_has_the_pressure_of_the_case) {
   for (int d = 0; d < DIM; d++) {
     params.pressure_point[d] = point[_i][d == DIM - 1];
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const bool done = step_advance(sim, 0.01) == EXIT_DONE;
   const double error = error_of_weight(sim, 2.5 - weight);
   two_phase_destroy(sim);
@@ -84,7 +83,7 @@ START_TEST(without_gas_the_mean_of_the_box_is_taken) {
   double full = 2;
   params.shape.context = &full;
   params.pressure_level = 3;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double mean = integral(sim->grid.mesh, sim->p->v);
   two_phase_destroy(sim);
   ck_assert_double_eq_tol(mean, 3, 1e-10);
@@ -134,7 +133,7 @@ static struct diagnostics collapse(enum pressure_at at, bool closed,
   rheology_set(&params.grains.rheology, "eta_max", 10);
   rheology_set(&params.grains.rheology, "rho", 1);
   params.tolerance_pressure = params.tolerance_viscous = 1e-4;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   while (*done && sim->model.time < 1) {
     *done = step_advance(sim, 1 - sim->model.time) == EXIT_DONE;
   }

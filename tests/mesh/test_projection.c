@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/projection.h"
-#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -85,7 +84,7 @@ static struct bed bed_new(int kind) {
 
 START_TEST(a_flat_bed_feels_no_acceleration) {
   struct bed bed = bed_new(_i);
-  struct two_phase *sim = two_phase_new(&bed.params);
+  struct two_phase *sim = sim_start(&bed.params);
   const double most = largest(sim, sim->g);
   const bool jumps =
       forest_nleaves_global(sim->grid.forest) < 1 << DIM * bed.params.level_max;
@@ -102,7 +101,7 @@ END_TEST
  * sum from the top down is that of the leaves. */
 START_TEST(pressure_is_the_weight_above) {
   struct bed bed = bed_new(2 | _i);
-  struct two_phase *sim = two_phase_new(&bed.params);
+  struct two_phase *sim = sim_start(&bed.params);
   const double grains = 1, gas = 1e-3;
   double most = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
@@ -122,7 +121,7 @@ START_TEST(static_acceleration_is_solenoidal) {
   struct params params = box_params(DIM == 2 ? 5 : 4);
   params.shape = (struct function){column, NULL};
   params_follow_surface(&params, 2, 2);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double left = sim->pressure.residual_after;
   const double h = 1.0 / (1 << params.level_max);
   two_phase_destroy(sim);

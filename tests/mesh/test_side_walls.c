@@ -8,7 +8,6 @@
  * per mass: sliding, the plug gains g sin(alpha) - F, and if that is negative
  * it stops after u_0/(F - g sin(alpha)) and stays. */
 #include "talus/side_walls.h"
-#include "talus/two_phase/start.h"
 
 #include <check.h>
 
@@ -65,7 +64,7 @@ static bool run_to(struct two_phase *sim, double stop, double dt) {
 START_TEST(a_plug_is_slowed_at_the_right_rate) {
   const double friction = _i ? 0.5 : 2, weight = sin(SLOPE), stop = 1;
   struct params params = plug_params(friction, true);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   double spread;
   const bool done = run_to(sim, stop, DT);
   const double speed = plug_speed(sim, &spread);
@@ -82,7 +81,7 @@ END_TEST
 START_TEST(a_plug_stops_and_stays) {
   const double weight = sin(SLOPE), stop = START / weight;
   struct params params = plug_params(2, true);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   double spread, late, rest;
   bool done = run_to(sim, 0.95 * stop, DT);
   const double before = plug_speed(sim, &spread);
@@ -111,7 +110,7 @@ START_TEST(a_plug_at_rest_yields_at_its_friction) {
   const double friction = yields ? 0.9 : 1.1;
   struct params params = plug_params(friction, false);
   params.theta = _i & 2 ? 0.5 : 1;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   double spread;
   const bool done = run_to(sim, 1, DT);
   const double speed = plug_speed(sim, &spread);

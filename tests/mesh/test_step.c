@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole time steps. */
-#include "talus/two_phase/start.h"
 #include "talus/two_phase/step.h"
 
 #include <check.h>
@@ -31,7 +30,7 @@ START_TEST(a_flat_bed_stays_still) {
   if (_i & 1) params_follow_surface(&params, 2, 1);
   if (_i & 2) params.boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
   if (_i & 4) params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double volume = integral(sim->grid.mesh, sim->c->v);
   const bool done = advance(sim, 15, 0.05);
   const double cells = largest(sim, sim->u);
@@ -139,7 +138,7 @@ START_TEST(cut_leaves_start_with_the_momentum_of_their_grains) {
   params.pressure_level_given = true;
   params.shape = (struct function){slanted, NULL};
   params.velocity[0] = (struct function){slanted_speed, NULL};
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const double c = sim->c->v[i], rho = params.gas.density;
     const double momentum = (rho + (1 - rho) * c) * sim->u[0]->v[i];
@@ -161,7 +160,7 @@ START_TEST(a_collapse_keeps_its_volume) {
   params_follow_surface(&params, 3, 2);
   if (_i & 1) params.boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
   if (_i & 2) params.cfl = 1;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double volume = integral(sim->grid.mesh, sim->c->v);
   const double cells = (double)forest_nleaves_global(sim->grid.forest);
   double drift = 0, excess = 0;
@@ -299,7 +298,7 @@ static double fall(enum look look, double out[NNUMBERS]) {
   params.shape = (struct function){column, NULL};
   params.tolerance_pressure = params.tolerance_viscous = 1e-4;
   params_follow_surface(&params, 3, 2);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   for (int k = 0; k < 40 && divergence < 1; k++) {
     if (look == FAILED_ONCE && k % 8 == 7) fail_a_step(sim, &params);
     const bool done = step_advance(sim, 1) == EXIT_DONE;
@@ -355,7 +354,7 @@ START_TEST(failed_steps_are_repeated_with_a_quarter_of_dt) {
     params.velocity[d] = (struct function){taylor_green, &kAxis[d]};
   }
   for (int k = 0; k < 2; k++) {
-    struct two_phase *sim = two_phase_new(&params);
+    struct two_phase *sim = sim_start(&params);
     times = k == 0 ? _i : 0;
     done = step_advance(sim, k == 0 ? 0.01 : dt) == EXIT_DONE && done;
     numbers(sim, out[k]);
@@ -381,7 +380,7 @@ static double decay_error(int level, double theta, double *shape) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){taylor_green, &kAxis[d]};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double dt = 0.4 / (1 << level);
   bool done = true;
   while (done && sim->model.time < end - 1e-12) {
@@ -473,7 +472,7 @@ START_TEST(momentum_is_conserved_in_a_periodic_box) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){uneven, &kAxis[d]};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   double before[DIM], most = 0;
   for (int d = 0; d < DIM; d++) before[d] = sim_momentum(sim, d);
   const bool done = advance(sim, 10, 1);
@@ -498,7 +497,7 @@ START_TEST(a_stiff_fluid_comes_to_rest_in_its_mean_flow) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){uneven, &kAxis[d]};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double start = largest(sim, sim->u);
   double most = 0;
   bool done = true;
@@ -530,7 +529,7 @@ START_TEST(a_dense_square_drifts_with_its_gas) {
   for (int d = 0; d < 2; d++) {
     params.velocity[d] = (struct function){drift, &kAxis[d]};
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const bool done = advance(sim, 20, 1);
   double most = 0;
   for (int d = 0; d < DIM; d++) {
@@ -555,7 +554,7 @@ START_TEST(a_drop_falls_freely) {
   params.shape = (struct function){ball, &body};
   params.gas.rheology = newtonian(1e-6);
   params_follow_surface(&params, 3, 2);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double mass = integral(sim->grid.mesh, sim->c->v);
   bool done = true;
   double speed = 0, fall = 0;
@@ -589,7 +588,7 @@ START_TEST(the_mean_pressure_is_that_of_the_case) {
   params.shape = (struct function){below, &height};
   params.pressure_level_given = true;
   params.pressure_level = 3.5;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double start = integral(sim->grid.mesh, sim->p->v);
   const bool done = advance(sim, 3, 0.01);
   const double end = integral(sim->grid.mesh, sim->p->v);
@@ -610,7 +609,7 @@ START_TEST(viscosity_of_leaves_is_that_of_the_fluid) {
   struct params params = periodic_params(DIM == 2 ? 4 : 3);
   double most = 0;
   params.grains.rheology = newtonian(0.03);
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   for (int k = 0; k < 2; k++) {
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       most = larger(most, fabs(sim->eta->v[i] - 0.03));
@@ -656,7 +655,7 @@ START_TEST(a_moving_wall_is_felt_from_rest) {
   params.tolerance_viscous = 1e-4;
   params.boundary[2 * DIM - 1] =
       (struct boundary){.type = BOUNDARY_NO_SLIP, .velocity = {2, 0, 0}};
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const bool done = advance(sim, 1, 1);
   const double dt = sim->model.dt;
   const int iterations = sim->viscous.iterations;
@@ -718,7 +717,7 @@ START_TEST(a_heap_less_steep_than_friction_rests) {
   params.boundary[2 * DIM - 2].type = BOUNDARY_NO_SLIP;
   params.boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
   params.tolerance_pressure = params.tolerance_viscous = 1e-6;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   bool done = true;
   double fastest = 0;
   while (done && sim->model.time < 1)
@@ -746,7 +745,7 @@ START_TEST(repetitions_close_in_on_a_velocity) {
   params.shape = (struct function){column, NULL};
   for (int k = 0; k < 3; k++) {
     params.picard = 1 << k;
-    struct two_phase *sim = two_phase_new(&params);
+    struct two_phase *sim = sim_start(&params);
     done = advance(sim, 5, 0.01) && done;
     change[k] = sim->repeat_change;
     iterations[k] = sim->viscous.iterations;
@@ -779,7 +778,7 @@ START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
   struct two_phase *sim[2];
   for (int k = 0; k < 2; k++) {
     params.picard = 0;
-    sim[k] = two_phase_new(&params);
+    sim[k] = sim_start(&params);
     done = advance(sim[k], 15, 1) && done;
     params.picard = k;
     done = advance(sim[k], 1, 1) && done;
@@ -807,7 +806,7 @@ START_TEST(a_solve_that_fails_is_told) {
   params.shape = (struct function){column, NULL};
   params.tolerance_pressure = 1e-14;
   params.max_iterations = 1;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double start = 0.01;
   double moved = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {

@@ -10,7 +10,6 @@
 #include <check.h>
 
 #include "sim.h"
-#include "talus/two_phase/start.h"
 
 Suite *still_suite(void);
 
@@ -66,7 +65,7 @@ START_TEST(a_surface_across_levels_stays_at_rest) {
   struct surface surface = SURFACE[_i];
   for (double ratio = 1e3; ratio < 2e6; ratio *= DIM == 2 ? 10 : 1e3) {
     struct params params = still_params(&surface, ratio);
-    struct two_phase *sim = two_phase_new(&params);
+    struct two_phase *sim = sim_start(&params);
     bool done = true;
     for (int k = 0; k < STEPS && done; k++) {
       done = step_advance(sim, 0.1) == EXIT_DONE;

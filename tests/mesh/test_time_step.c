@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sudden starts: the length of a step, and c in step with it. */
-#include "talus/two_phase/start.h"
 #include "talus/two_phase/time_step.h"
 
 #include <check.h>
@@ -26,7 +25,7 @@ static double nowhere(void *context, const double x[3]) {
 START_TEST(two_equal_steps_meet_a_time) {
   struct params params = box_params(4);
   double rate;
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   const double dt = time_step_choose(sim, 1e6, &rate);
   ck_assert_double_eq(time_step_choose(sim, 0.5 * dt, &rate), 0.5 * dt);
   ck_assert_double_eq(time_step_choose(sim, 1.5 * dt, &rate), 0.75 * dt);
@@ -47,7 +46,7 @@ START_TEST(a_fall_from_rest_keeps_to_the_bound) {
   for (int side = 0; side < 2; side++) {
     params.boundary[side].type = BOUNDARY_PERIODIC;
   }
-  struct two_phase *sim = two_phase_new(&params);
+  struct two_phase *sim = sim_start(&params);
   for (int k = 0; k < 6 && done; k++) {
     done = step_advance(sim, 1e6) == EXIT_DONE;
     most = larger(most, sim->model.dt * time_step_rate(sim));
@@ -145,7 +144,7 @@ static struct two_phase *bed_at_rest(struct params *params) {
   params->shape = (struct function){below, &height};
   params->tolerance_pressure = params->tolerance_viscous = 1e-12;
   params->boundary[2 * DIM - 1].type = BOUNDARY_OUTFLOW;
-  struct two_phase *sim = two_phase_new(params);
+  struct two_phase *sim = sim_start(params);
   ck_assert_int_eq(step_advance(sim, 0.4), EXIT_DONE);
   conditions_measure(sim, &sim->conditions);
   return sim;

@@ -9,12 +9,11 @@ struct model_start;
 struct params;
 struct two_phase;
 
-/* Make the initial state of a case. Collective. The caller owns it. */
-struct two_phase *two_phase_new(const struct params *params);
-/* Make it and tell what is being done; where the grid would outgrow the memory,
- * grid.outgrown is set and the grid stays coarser. */
-struct two_phase *two_phase_new_told(const struct params *params,
-                                     const struct model_start *start);
+/* Make the initial state of a case and tell what is being done; where the grid
+ * would outgrow the memory, grid.outgrown is set and the grid stays coarser.
+ * Collective. The caller owns it. */
+struct two_phase *two_phase_new(const struct params *params,
+                                const struct model_start *start);
 /* Adapt the grid of a restart, whose conditions may be new, until openings are
  * as fine as they are to be (openings.h). Collective. */
 void two_phase_refine_openings(struct two_phase *sim);
