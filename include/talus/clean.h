@@ -4,11 +4,10 @@
  * An iterative projection leaves a divergence of the size of its tolerance,
  * which VOF would turn into a drift of volume. Here every cell of the tree,
  * from the root down, shares the excess of its children out across the faces
- * between the children: with N_a the net outflow of child
- * a, the smallest change of the inner fluxes is
- *   dF_ab = psi_a - psi_b,   sum_b (psi_a - psi_b) = -N_a,
- * a Laplacian on the 2^DIM children, diagonal in the Walsh-Hadamard basis
- * with eigenvalues 2 x (number of set bits). A change of a face is shared
+ * between the children: with N_a the net outflow of child a, the smallest
+ * change of the inner fluxes is dF_ab = psi_a - psi_b,   sum_b (psi_a - psi_b)
+ * = -N_a, a Laplacian on the 2^DIM children, diagonal in the Walsh-Hadamard
+ * basis with eigenvalues 2 x (number of set bits). A change of a face is shared
  * evenly by the finer faces that make it up. The trees of a brick pass on
  * their excess along the axes; the total leaves through the open boundaries.
  * The change is of the size of the divergence, cost O(leaves).

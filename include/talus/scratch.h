@@ -4,11 +4,10 @@
  * A pool has a fixed number of arrays at either location, fields of a registry
  * (field.h), whose length follows the mesh. A taker, known by name, takes all
  * arrays of a location at once and gives everything back at once; an array has
- * one taker at a time. It is a broken contract (CHECK) to
- * take again before giving back, to take more than is free, and to give back
- * what was not taken. The contents of an array that has been taken
- * are undefined: debug builds fill it with poison (poison.h), and again when it
- * is given back.
+ * one taker at a time. It is a broken contract (CHECK) to take again before
+ * giving back, to take more than is free, and to give back what was not taken.
+ * The contents of an array that has been taken are undefined: debug builds fill
+ * it with poison (poison.h), and again when it is given back.
  *
  *   double *rhs = scratch_take_one(scratch, FIELD_CELL, __func__);
  *   ...
