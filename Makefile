@@ -116,7 +116,7 @@ demo: setup ## column collapse with pictures: half a minute on two cores, mostly
 check: setup ## all tests, in three minutes
 	$(AGAIN) all tests
 	@tests/run.sh $(BUILD) format includes unit mesh case
-check-unit check-mesh check-case: check-%: ## one level of them
+check-unit check-mesh check-case: check-%: ## one group of them
 	$(AGAIN) all tests
 	@tests/run.sh $(BUILD) $*
 convergence: ## proof of the numbers in five minutes; CASE=NAME, CASE=short
