@@ -4,7 +4,8 @@
 
 1. What stands over a function says what the function does, so it begins with a
    verb, not with one of NOT_FIRST.
-2. Files that comments and pages name exist: the path from the root, that below
+2. Papers that are cited by key, [weymouth_yue_2010], are in references.bib.
+3. Files that comments and pages name exist: the path from the root, that below
    include/ or include/talus/, or a name alone. NAME in capitals, as in NAME.c,
    stands for any.
 
@@ -27,6 +28,8 @@ OVER_FUNCTION = re.compile(r"^/\*(?P<text>(?:(?!\*/).)*)\*/ *\n"
                            re.S | re.M)
 FILE = re.compile(r"(?<![\w.*/-])((?:[\w-]+/)*[\w-]+\.(?:c|h|py|sh|md))"
                   r"(?!\w|\.\w)")
+KEY = re.compile(r"\b[a-z]+(?:_[a-z]+)*_\d{4}[a-z]?\b")
+CITED = re.compile(r"\[(" + KEY.pattern + r")[^]]*\]")
 ANY = re.compile(r"(?<![A-Za-z])[A-Z]{3,}(?=[./])")
 
 
@@ -42,6 +45,9 @@ class Checker:
         self.names = {path.name for path in self.sources + self.pages}
         self.names.update(path.name for folder in ("tools", "tests")
                           for path in (root / folder).rglob("*.*"))
+        papers = root / "references.bib"
+        self.papers = (set(KEY.findall(papers.read_text(encoding="utf-8")))
+                       if papers.exists() else set())
         self.violations = []
 
     def complain(self, path, text, place, message):
@@ -63,10 +69,18 @@ class Checker:
                 self.complain(path, text, match.start(),
                               f"there is no {match.group(1)}")
 
+    def check_papers(self, path, text, begin, end):
+        for match in CITED.finditer(text, begin, end):
+            for key in KEY.findall(match.group()):
+                if key not in self.papers:
+                    self.complain(path, text, match.start(),
+                                  f"{key} is not in references.bib")
+
     def check_source(self, path):
         text = path.read_text(encoding="utf-8")
         for comment in COMMENT.finditer(text):
             self.check_names(path, text, *comment.span())
+            self.check_papers(path, text, *comment.span())
         for match in OVER_FUNCTION.finditer(text):
             word = match.group("text").lstrip("\n *").split(None, 1)[:1]
             if word and word[0].strip(",:;") in NOT_FIRST:

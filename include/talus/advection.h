@@ -1,21 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bell-Colella-Glaz unsplit upwind advection of momentum.
  *
- * Velocity at faces and half steps, from the upwind cell (Bell, Colella &
- * Glaz 1989, 10.1016/0021-9991(89)90151-4; Popinet 2003,
- * 10.1016/S0021-9991(03)00298-5):
+ * Velocity at faces and half steps, from the upwind cell
+ * [bell_colella_glaz_1989; popinet_2003]:
  *   u^{n+1/2} = u + (h/2) (s - u_n dt/h) du/dn - dt/2 sum_t u_t d^up u/dt
  *               + dt/2 g,
  * s the sign of the face velocity u_n, t the directions along the face with
- * upwind differences, g the mean acceleration of the two cells; du/dn central,
- * or limited where velocities are steep: then a velocity that is only carried,
- * on one level, gets no new extrema (a square at any angle: none with minmod,
- * at most 1e-3 of the jump with its generalised form), and smooth ones are
- * carried to order 1.6 instead of 2. At fixed h the order in dt is one, with
- * an error h dt, as the derivatives in time are taken upwind. Then
- *   u <- u - dt/h sum_d [u_f (u^{n+1/2} - u)]_d,
- * which is the conservative form as long as u_f is solenoidal, and keeps a
- * uniform velocity whatever it is.
+ * upwind differences, g the mean acceleration of the two cells. du/dn is
+ * central, or limited where velocities are steep: with minmod a velocity that
+ * is only carried, on one level, gets no new extrema, with the generalised form
+ * next to none; but smooth ones are carried to order 1.6 instead of 2 (`make
+ * convergence CASE=advection`, docs/notes/limiter.md). At fixed h the order in
+ * dt is one, with an error h dt, as the derivatives in time are taken upwind.
+ * Then u <- u - dt/h sum_d [u_f (u^{n+1/2} - u)]_d, which is the conservative
+ * form as long as u_f is solenoidal, and keeps a uniform velocity with any u_f.
  */
 #ifndef TALUS_ADVECTION_H
 #define TALUS_ADVECTION_H

@@ -3,7 +3,7 @@
  *
  *   dc/dt + div(c u) = 0                       [lagree_staron_popinet_2011,
  *                                               eq. 2.6]
- * One sweep along axis d (Weymouth & Yue 2010, 10.1016/j.jcp.2009.12.018):
+ * One sweep along axis d [weymouth_yue_2010]:
  *   c <- c - dt/h [F]_d + cc dt/h [u_f]_d,   [v]_d = v(upper) - v(lower),
  * F the part of the volume u_f dt that the plane n.x <= alpha of the upwind
  * leaf fills, cc = 1 where c > 1/2 before the first sweep, else 0. After all

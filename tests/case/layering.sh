@@ -61,10 +61,13 @@ if [ "$(wc -l <<< "$found")" -ne "$(wc -l <<< "$expected")" ]; then
 fi
 
 mkdir -p "$tree"/tools "$tree"/tests
+echo '@article{known_2010,' > "$tree/references.bib"
 file src/base/prose.c '/* The sum of both, as in error.h and prose.h. */' \
-  'int sum(int a, int b) {' '}' '/* Add as NAME.c does. */' 'int add(int a);'
+  'int sum(int a, int b) {' '}' \
+  '/* Add as NAME.c does [known_2010; unknown_2011, eq. 2]. */' 'int add(int a);'
 found=$(python3 "$root/tools/check_prose.py" "$tree") && exit 1
 expected='src/base/prose.c:2: there is no prose.h
+src/base/prose.c:5: unknown_2011 is not in references.bib
 src/base/prose.c:2: begin with a verb, not with The'
 [ "$found" = "$expected" ] || { echo "$found"; exit 1; }
 
