@@ -38,7 +38,7 @@ enum { CASE_MAX_LEVEL_2D = 24, CASE_MAX_LEVEL_3D = 16, CASE_MAX_TREES = 32767 };
 char *case_read_text(const char *path);
 
 /*
- * Runs and checks a case. Collective in that all ranks must pass the same; any
+ * Run and check a case. Collective in that all ranks must pass the same; any
  * fault of the case or of an override is a USER_ERROR.
  *   path       for messages, and the name of the case is made from it
  *   text       what the file holds, copied
@@ -49,7 +49,7 @@ char *case_read_text(const char *path);
 struct case_file *case_load_text(const char *path, const char *text,
                                  int noverrides, char *const overrides[]);
 
-/* Frees the case and with it the functions that its params hold. */
+/* Free the case and with it the functions that its params hold. */
 void case_destroy(struct case_file *file);
 
 /* Return the description of the case, owned by the case and valid while it
@@ -69,11 +69,11 @@ const char *case_parameter(const struct case_file *file, const char *name);
  * over the box, or the grains fill it. */
 bool case_finds_grains(const struct case_file *file);
 
-/* Prints every parameter in use, one `key = value  unit  meaning` a line, those
+/* Print every parameter in use, one `key = value  unit  meaning` a line, those
  * declared by param() first. Defaults are marked. */
 void case_print(const struct case_file *file, FILE *f);
 
-/* Writes the same as csv: a header `key,value,unit,origin`, origin one of
+/* Write the same as csv: a header `key,value,unit,origin`, origin one of
  * default, case, command line. Fields are quoted where csv needs it. */
 void case_write_parameters(const struct case_file *file, FILE *f);
 
@@ -91,7 +91,7 @@ bool case_name_is_taken(const char *name);
  * prints nothing, as running the case will tell why. */
 int case_dimension(const char *path, int noverrides, char *const overrides[]);
 
-/* Prints how a case is written and the table of its keys. */
+/* Print how a case is written and the table of its keys. */
 void case_help(FILE *f);
 
 #endif

@@ -30,7 +30,7 @@ struct csv_row {
 };
 
 /*
- * Reads the next row. Not collective.
+ * Read the next row. Not collective.
  *   f    open to read; fmemopen makes one of a text
  *   row  in/out: replaced
  * returns  false at the end of the file, where the row is empty
@@ -41,19 +41,19 @@ bool csv_row_read(FILE *f, struct csv_row *row);
  * It lasts until the next csv_row_read. */
 const char *csv_row_cell(const struct csv_row *row, int k);
 
-/* Reads cell k as a number, all characters of the cell; returns false, *value
- * as it was, if the cell is no number. */
+/* Read cell k as a number, all characters of the cell; returns false, *value as
+ * it was, if the cell is no number. */
 bool csv_row_number(const struct csv_row *row, int k, double *value);
 
-/* Adds a cell to the row that is being written; the first one after the end of
- * a row begins the next. */
+/* Add a cell to the row that is being written; the first one after the end of a
+ * row begins the next. */
 void csv_row_add(struct csv_row *row, const char *text);
 
-/* Ends the row, whose `line` lasts until the next csv_row_add, and writes it.
+/* End the row, whose `line` lasts until the next csv_row_add, and write it.
  * Not collective. */
 void csv_row_write(struct csv_row *row, FILE *f);
 
-/* Frees what the functions above have allocated. */
+/* Free what the functions above have allocated. */
 void csv_row_free(struct csv_row *row);
 
 #endif

@@ -32,10 +32,9 @@ enum {
 };
 
 /*
- * Turns the traps of debug builds on or off on this rank, around foreign code
+ * Turn the traps of debug builds on or off on this rank, around foreign code
  * that divides by zero in good faith, as a Lua file may. Does nothing in
- * release builds.
- * returns  whether they were on
+ * release builds. returns  whether they were on
  */
 bool base_trap_floating_point(bool on);
 

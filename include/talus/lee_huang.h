@@ -92,7 +92,8 @@ struct lee_huang_marks {
   double nu_tran, nu_last;   /* nu at I_tran and I_max */
 };
 
-/* Finds them; returns NULL, or what is wrong with the parameters. */
+/* Find the ends of the branches; returns NULL, or what is wrong with the
+ * parameters. */
 const char *lee_huang_find(const double *param, struct lee_huang_marks *marks);
 
 /* Steady shear at an inertial number and K/p, both >= 0, n infinite, by finding

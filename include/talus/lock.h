@@ -12,25 +12,25 @@
 #define TALUS_LOCK_H
 
 /*
- * Ends the program (SYSTEM_ERROR, which says which process on which host) if
+ * End the program (SYSTEM_ERROR, which says which process on which host) if
  * another process holds the lock of the directory. Leaves no trace. Collective.
  */
 void lock_check(const char *directory);
 
 /*
- * Takes the lock of the directory until lock_release or the end of the process;
+ * Take the lock of the directory until lock_release or the end of the process;
  * as lock_check if another process holds it, USER_ERROR if the file cannot be
  * made. Does nothing if this process holds it already, or if there is no such
  * directory. Collective.
  */
 void lock_take(const char *directory);
 
-/* Ends the program (FATAL) if the directory given to lock_take was removed,
+/* End the program (FATAL) if the directory given to lock_take was removed,
  * renamed or replaced since: what is written by its name would be lost, or
  * spoil another run. Not collective; rank 0 looks. */
 void lock_verify(void);
 
-/* Gives the lock back, if there is one. Not collective. */
+/* Give the lock back, if there is one. Not collective. */
 void lock_release(void);
 
 #endif

@@ -11,17 +11,17 @@
 #include <stdbool.h>
 
 /*
- * Opens the log on rank 0 and closes the one open before. An existing file is
+ * Open the log on rank 0 and close the one open before. An existing file is
  * continued, as a restarted run goes on in its directory. Collective.
  *   path  file to write; its directory must exist
  * returns  on all ranks whether it could be opened; errno of rank 0 says why
  */
 bool log_open(const char *path);
 
-/* Closes the log; allowed when none is open. Not collective. */
+/* Close the log; allowed when none is open. Not collective. */
 void log_close(void);
 
-/* Writes one line (printf, without the newline) and flushes it. */
+/* Write one line (printf, without the newline) and flush it. */
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 #endif

@@ -25,7 +25,7 @@ void mem_begin(void);
 #define MEM_NEW(type, count) ((type *)mem_alloc((count), sizeof(type)))
 
 /*
- * Allocates a zeroed array; ends the program (FATAL) if there is no room or
+ * Allocate a zeroed array; ends the program (FATAL) if there is no room or
  * count * size overflows.
  *   count  number of elements, 0 allowed
  *   size   bytes of one element
@@ -35,7 +35,7 @@ void *mem_alloc(size_t count, size_t size)
     __attribute__((malloc, returns_nonnull));
 
 /*
- * Changes the size of a block and keeps its contents up to the smaller of both
+ * Change the size of a block and keep its contents up to the smaller of both
  * sizes. What is added has no defined value. Fails as mem_alloc does.
  *   p      block from mem_alloc or mem_resize, no longer valid afterwards;
  *          NULL gives a new zeroed block
@@ -46,7 +46,7 @@ void *mem_alloc(size_t count, size_t size)
 void *mem_resize(void *p, size_t count, size_t size)
     __attribute__((returns_nonnull));
 
-/* Frees a block of mem_alloc or mem_resize; NULL is allowed. */
+/* Free a block of mem_alloc or mem_resize; NULL is allowed. */
 void mem_free(void *p);
 
 /* Number of blocks of this rank that are not freed yet. */

@@ -37,8 +37,8 @@ void output_write_heading(struct hdf5_file *file, const char *parameters);
  * `text` [32]; returns `text`. */
 char *output_number(double value, char text[32]);
 
-/* Ends the program unless everything written to `f` has reached the
- * operating system. Not collective. */
+/* End the program unless everything written to `f` has reached the operating
+ * system. Not collective. */
 void output_flush(FILE *f, const char *path);
 
 #endif

@@ -4,7 +4,7 @@
 #define TALUS_PARAMETER_CHANGES_H
 
 /*
- * Says `key = value (was value)` of the values that differ, one a line, on
+ * Say `key = value (was value)` of the values that differ, one a line, on
  * stderr and in the log. Values that follow from the command line, now or
  * before, are many, and only the log names them; where the command line has
  * changed nothing the case was edited, and stderr has all changes. For one

@@ -4,8 +4,8 @@
 #define TALUS_PROGRAM_H
 
 /*
- * Initialises MPI, with or without a launcher, makes MPI errors return to
- * MPI_CHECK, and in debug builds traps invalid operations, overflow and
+ * Initialise MPI, with or without a launcher, make MPI errors return to
+ * MPI_CHECK, and in debug builds trap invalid operations, overflow and
  * division by zero. Collective; call once, first thing in main.
  *   argc, argv  in/out: as main got them, MPI may take its own options out;
  *               may be NULL
@@ -13,14 +13,14 @@
 void base_begin(int *argc, char ***argv);
 
 /*
- * Takes the rank from the environment that a launcher (mpirun, srun) sets, for
- * what is said before MPI begins, or without it. Not collective.
- * returns  the rank, 0 without a launcher
+ * Take the rank from the environment that a launcher (mpirun, srun) sets, for
+ * what is said before MPI begins, or without it. Not collective. returns  the
+ * rank, 0 without a launcher
  */
 int base_take_rank(void);
 
 /*
- * Ends MPI. Debug builds say on stderr how many blocks of memory.h each rank
+ * End MPI. Debug builds say on stderr how many blocks of memory.h each rank
  * still holds. Collective; does nothing if MPI is not running.
  */
 void base_end(void);

@@ -69,7 +69,7 @@ struct rheology_key {
 struct rheology;
 
 /*
- * Fills out[i], i < n, from shear rate (>= 0) and pressure (>= 0); r->param is
+ * Fill out[i], i < n, from shear rate (>= 0) and pressure (>= 0); r->param is
  * in the order of the model's keys. No array overlaps another.
  */
 typedef void rheology_function(const struct rheology *r, int32_t n,
@@ -77,7 +77,7 @@ typedef void rheology_function(const struct rheology *r, int32_t n,
                                const double *restrict pressure,
                                double *restrict out);
 
-/* Computes viscosity as rheology_function, by a function of the user that may
+/* Compute viscosity as rheology_function, by a function of the user that may
  * look at the time, s. */
 typedef void rheology_user_function(void *context, double time, int32_t n,
                                     const double *shear_rate,
@@ -138,7 +138,7 @@ struct rheology {
   void *context;                /* borrowed */
 };
 
-/* Lets errors of GSL, by which closures find roots, end the program as FATAL
+/* Let errors of GSL, by which closures find roots, end the program as FATAL
  * does. Call once at the start; without it they end in abort(). */
 void rheology_begin(void);
 

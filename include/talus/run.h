@@ -27,7 +27,7 @@ struct run_options {
   void *context; /* of write_parameters, borrowed */
 };
 
-/* Runs a checked case, signals caught (signals.h). Collective. Returns an exit
+/* Run a checked case, signals caught (signals.h). Collective. Returns an exit
  * status (error.h): EXIT_STOPPED when a signal (signals.h) or a bound of the
  * options ended it early, after a checkpoint. params   borrowed, unchanged
  *   options  borrowed */

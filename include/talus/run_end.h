@@ -5,7 +5,7 @@
 #ifndef TALUS_RUN_END_H
 #define TALUS_RUN_END_H
 
-/* Prints for people, as one line, how the last run in a directory ended. Not
+/* Print for people, as one line, how the last run in a directory ended. Not
  * collective. */
 void run_end_print(const char *directory);
 

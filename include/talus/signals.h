@@ -11,10 +11,10 @@
 #ifndef TALUS_SIGNALS_H
 #define TALUS_SIGNALS_H
 
-/* Catches the signals of a run that starts. Not collective. */
+/* Catch the signals of a run that starts. Not collective. */
 void signals_catch(void);
 
-/* Remembers signals from now on. Not collective. */
+/* Remember signals from now on. Not collective. */
 void signals_remember(void);
 
 /* Return the signal that came last, 0 if none did. This rank only. */

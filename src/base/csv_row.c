@@ -28,14 +28,14 @@ static void begin_cell(struct csv_row *row) {
   row->begin[row->n++] = row->cells.n;
 }
 
-/* Takes the next character of the line from the file. */
+/* Take the next character of the line from the file. */
 static int take(FILE *f, struct csv_row *row) {
   const int c = getc(f);
   if (c != EOF) add_character(&row->line, (char)c);
   return c;
 }
 
-/* Reads one cell; returns the character that ends it: ',', '\n' or EOF. */
+/* Read one cell; returns the character that ends it: ',', '\n' or EOF. */
 static int read_cell(FILE *f, struct csv_row *row) {
   bool quoted = false;
   begin_cell(row);

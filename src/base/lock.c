@@ -41,7 +41,7 @@ static bool is_current(int file, const char *path) {
          mine.st_ino == named.st_ino && mine.st_dev == named.st_dev;
 }
 
-/* Reads who holds the lock, without the end of the line. */
+/* Read who holds the lock, without the end of the line. */
 static void read_holder(int file, char words[WORDS_LENGTH]) {
   const ssize_t n = pread(file, words, WORDS_LENGTH - 1, 0);
   words[n > 0 ? n : 0] = '\0';
@@ -59,7 +59,7 @@ static void write_holder(int file) {
   (void)told; /* a lock without a name holds as well */
 }
 
-/* Opens and locks the file of this name, made if `flags` say so. */
+/* Open and lock the file of this name, made if `flags` say so. */
 static enum outcome try_lock(const char *path, int flags, int *file,
                              char words[WORDS_LENGTH]) {
   for (int k = 0; k < TRIALS; k++) {
@@ -84,7 +84,7 @@ static enum outcome try_lock(const char *path, int flags, int *file,
   return REFUSED;
 }
 
-/* Lets all ranks end, or go on, with what rank 0 has found. */
+/* Let all ranks end, or go on, with what rank 0 has found. */
 static void conclude(const char *directory, enum outcome outcome,
                      const char *words) {
   int found = outcome;
@@ -113,7 +113,7 @@ void lock_check(const char *directory) {
   conclude(directory, outcome == HELD ? HELD : ABSENT, words);
 }
 
-/* Takes the lock on rank 0, and remembers it. */
+/* Take the lock on rank 0, and remember it. */
 static enum outcome take(const char *directory, char words[WORDS_LENGTH]) {
   if (stat(directory, &place_status) == 0)
     snprintf(place, sizeof place, "%s", directory);

@@ -67,7 +67,7 @@ static void read_options(struct case_file *file, const char *path,
   }
 }
 
-/* Takes the value off. */
+/* Read a boundary and take its value off the stack. */
 static void read_boundary(struct case_file *file, const char *path,
                           const char *help, struct boundary *boundary) {
   const struct boundary_kind *kind = read_kind(file, path);

@@ -69,7 +69,7 @@ static void read_options(struct case_file *file, const char *path,
   }
 }
 
-/* Takes the value off. */
+/* Read a criterion and take its value off the stack. */
 static void read_criterion(struct case_file *file, const char *path) {
   struct params *params = &file->params;
   struct criterion *criterion = &params->criterion[params->ncriteria++];

@@ -71,8 +71,8 @@ static void set_option(struct command_line *line, const char *name,
     line->max_walltime = read_seconds(value);
 }
 
-/* Takes argv[i] and perhaps its value; returns the last index taken. `given`
- * has the values of options that came before. */
+/* Take argv[i] and perhaps its value; returns the last index taken. `given` has
+ * the values of options that came before. */
 static int read_option(int argc, char *argv[], int i,
                        const char *given[NOPTIONS], struct command_line *line) {
   int k = find_option(argv[i]);

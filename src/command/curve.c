@@ -157,7 +157,7 @@ static double *quantity(const struct rheology *rheology, const char *name,
   return NULL;
 }
 
-/* Adds entry i of a column to a row; nothing if there is no such column. */
+/* Add entry i of a column to a row; nothing if there is no such column. */
 static void add_number(struct csv_row *row, const double *column, int i) {
   char text[32] = "";
   if (column != NULL) snprintf(text, sizeof text, "%.10g", column[i]);

@@ -27,8 +27,8 @@ struct table {
   long nrows;
 };
 
-/* Reads a csv file, but for a last row that is being written; false if there
- * is none, or without a header. */
+/* Read a csv file, but for a last row that is being written; false if there is
+ * none, or without a header. */
 static bool read_table(const char *path, struct table *table) {
   FILE *f = fopen(path, "r");
   struct csv_row row = {0};
@@ -51,7 +51,7 @@ static void free_table(struct table *table) {
   csv_row_free(&table->last);
 }
 
-/* Prints `column = value` for each cell of the last row. */
+/* Print `column = value` for each cell of the last row. */
 static void print_last(const struct table *table) {
   for (int k = 0; k < table->header.n && k < table->last.n; k++)
     printf("  %-20s = %s\n", csv_row_cell(&table->header, k),
@@ -74,7 +74,7 @@ static int info_csv(const char *path) {
   return EXIT_DONE;
 }
 
-/* Prints title and unit of each field that the root names. */
+/* Print title and unit of each field that the root names. */
 static void print_fields(struct hdf5_file *file) {
   char list[LENGTH], *rest = list;
   if (!hdf5_read_text(file, "/", "fields", sizeof list, list)) return;
@@ -87,7 +87,7 @@ static void print_fields(struct hdf5_file *file) {
   }
 }
 
-/* Refuses a checkpoint that is not what was written: HDF5 trusts its files. */
+/* Refuse a checkpoint that is not what was written: HDF5 trusts its files. */
 static void check_seal(const char *path) {
   struct seal_report report;
   seal_check(MPI_COMM_SELF, path, &report);
@@ -149,7 +149,7 @@ static void print_files(const char *directory) {
     printf("  snapshot-*.h5, %5d      %10.0f kB\n", snapshots, snapshots_size);
 }
 
-/* Prints `key = value` for each row of parameters.csv. */
+/* Print `key = value` for each row of parameters.csv. */
 static void print_parameters(const char *path) {
   FILE *f = fopen(path, "r");
   struct csv_row row = {0};

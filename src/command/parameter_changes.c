@@ -32,7 +32,7 @@ static void say_change(FILE *to, const char *key, const char *is,
     log_info("restart with %s = %s (was %s)", key, is, was);
 }
 
-/* Goes once over the rows before, with `only_set` those that the user set.
+/* Go once over the rows before, with `only_set` those that the user set.
  * Returns how many changes were said. */
 static int say(FILE *before, const char *now, bool only_set, FILE *to) {
   struct csv_row was = {0}, is = {0};

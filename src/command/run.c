@@ -263,8 +263,8 @@ static void say_begin(const struct run *run) {
   progress_say(run->progress, "%s", alone);
 }
 
-/* Refuses a directory that cannot be written to, or that holds what is not to
- * be written over: another run, or somebody's files. */
+/* Refuse a directory that cannot be written to, or that holds what is not to be
+ * written over: another run, or somebody's files. */
 static void prepare_directory(const struct run_options *options) {
   output_check_directory(options->directory);
   if (options->restart) {

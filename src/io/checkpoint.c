@@ -155,7 +155,7 @@ void checkpoint_write(const char *path, const char *model,
 
 /* Read */
 
-/* Refuses a file that is not to the bit what was written, before HDF5, which
+/* Refuse a file that is not to the bit what was written, before HDF5, which
  * trusts what it reads, sees it. */
 static void check_seal(MPI_Comm comm, const char *path) {
   struct seal_report report;
@@ -310,8 +310,8 @@ static bool is_within(struct range range, double value) {
   return isfinite(value) && value >= range.low && value <= range.high;
 }
 
-/* Refuses the value of a field in a leaf that this rank owns if `first` says
- * so. Collective; does not return. */
+/* Refuse the value of a field in a leaf that this rank owns if `first` says so.
+ * Collective; does not return. */
 static _Noreturn void refuse_value(struct checkpoint *checkpoint,
                                    const struct mesh *mesh,
                                    const struct field *field, int first,
@@ -333,7 +333,7 @@ static _Noreturn void refuse_value(struct checkpoint *checkpoint,
       checkpoint->path, field->name, field->title, found[0], place, range);
 }
 
-/* Refuses values v [nleaves][columns] that no run can have written. */
+/* Refuse values v [nleaves][columns] that no run can have written. */
 static void check_values(struct checkpoint *checkpoint, const struct mesh *mesh,
                          const struct field *field, int columns,
                          const double *v) {
@@ -384,7 +384,7 @@ void checkpoint_read_fields(struct checkpoint *checkpoint,
       read_field(checkpoint, mesh, fields->field[k]);
 }
 
-/* Refuses a number out of its range. */
+/* Refuse a number out of its range. */
 static void check_scalar(const struct checkpoint *checkpoint,
                          const struct scalar *s, double value) {
   if (value >= s->low && value <= s->high) return;

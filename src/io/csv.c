@@ -22,8 +22,8 @@ struct csv {
   struct csv_row row;   /* under way */
 };
 
-/* Judges a file that is to be continued, on rank 0; returns 0, an errno, -1
- * for a foreign header, or -2 with what differs in `text`. */
+/* Judge a file that is to be continued, on rank 0; returns 0, an errno, -1 for
+ * a foreign header, or -2 with what differs in `text`. */
 static int judge(const char *path, const struct csv_expected *expected,
                  size_t size, char *text) {
   FILE *f = fopen(path, "r");
@@ -65,7 +65,7 @@ void csv_check(const char *directory, const struct csv_expected *expected) {
   mem_free(path);
 }
 
-/* Writes the start of the file beside the old one and puts it in its place.
+/* Write the start of the file beside the old one and put it in its place.
  * Returns 0, an errno, or -1 for rows that are no longer those of the mark. */
 static int prepare(const char *path, const char *header,
                    const struct csv_mark *kept) {
@@ -158,7 +158,7 @@ void csv_integer(struct csv *csv, int64_t value) {
   write_cell(csv, text);
 }
 
-/* Warns when what is written can no longer be found by its name. */
+/* Warn when what is written can no longer be found by its name. */
 static void warn_if_gone(const struct csv *csv) {
   struct stat status;
   if (fstat(fileno(csv->f), &status) != 0 || status.st_nlink > 0) return;

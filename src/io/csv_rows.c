@@ -59,7 +59,7 @@ struct gaps {
   char text[256];      /* the first of them, "13 to 97, 105" */
 };
 
-/* Adds up to a row of this step. */
+/* Add up to a row of this step. */
 static void pass(struct gaps *gaps, int64_t step) {
   const int64_t last = (step - 1) / gaps->every * gaps->every;
   if (step > gaps->next) {

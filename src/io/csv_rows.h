@@ -11,17 +11,17 @@
 #include "talus/csv.h"
 #include "talus/csv_row.h"
 
-/* Reads the header, which must be this one. */
+/* Read the header, which must be this one. */
 bool csv_rows_read_header(FILE *f, const char *header);
 
-/* Copies the rows of the mark from `old`, which is past its header, to `new`,
+/* Copy the rows of the mark from `old`, which is past its header, to `new`,
  * which may be NULL; returns false unless the mark was made of these rows. */
 bool csv_rows_copy(FILE *old, FILE *new, const struct csv_mark *mark);
 
-/* Adds a row to a mark. */
+/* Add a row to a mark. */
 void csv_rows_add(struct csv_mark *mark, const struct csv_row *row);
 
-/* Says how the rows of `f`, which is past its header, differ from the expected
+/* Say how the rows of `f`, which is past its header, differ from the expected
  * ones; part of a sentence, in `text` [size]. */
 void csv_rows_describe(FILE *f, const struct csv_expected *expected,
                        size_t size, char *text);

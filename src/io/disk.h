@@ -3,7 +3,7 @@
 #ifndef TALUS_DISK_H
 #define TALUS_DISK_H
 
-/* Says what to try after `error`, an errno, on `path`: a directory that is gone
+/* Say what to try after `error`, an errno, on `path`: a directory that is gone
  * is named, a lack of space asked about; "" where the words of the system are
  * enough. The text is static. */
 const char *disk_advice(const char *path, int error);
@@ -14,8 +14,8 @@ _Noreturn void disk_fail(const char *path, int error);
 /* Judge an errno of fsync: 0 for a file system that cannot sync. */
 int disk_sync_error(int error);
 
-/* Brings the directory of a file to the disk, so that the names in it last.
- * File systems that cannot do it are passed over. */
+/* Bring the directory of a file to the disk, so that the names in it last. File
+ * systems that cannot do it are passed over. */
 void disk_sync_directory(const char *file);
 
 #endif

@@ -38,8 +38,8 @@ static const char SIGNATURE[] = "talus plot";
 
 enum { NPICTURES = sizeof PICTURES / sizeof *PICTURES };
 
-/* Reads the first bytes of a file, or with `end` the last; returns how many,
- * or -1 if it is no regular file that can be read. */
+/* Read the first bytes of a file, or with `end` the last; returns how many, or
+ * -1 if it is no regular file that can be read. */
 static int read_part(const char *path, bool end, char part[HEAD]) {
   struct stat status;
   if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) return -1;
@@ -99,7 +99,7 @@ static bool is_snapshot(const char *name, int first) {
          name[end] == '\0' && number >= first && strlen(name) < NAME_LENGTH;
 }
 
-/* Finds a file of a run's names that is not ours, on rank 0; its name, or "".
+/* Find a file of a run's names that is not ours, on rank 0; its name, or "".
  */
 static void find_foreign(const char *directory, char name[NAME_LENGTH]) {
   const bool run = holds_run(directory);
@@ -144,7 +144,7 @@ bool old_run_time(const char *directory, double *time) {
   return found;
 }
 
-/* Removes a file; a directory that loses files while we write is no reason to
+/* Remove a file; a directory that loses files while we write is no reason to
  * stop. */
 static void remove_file(const char *directory, const char *name) {
   char *path = output_path(directory, name);
@@ -152,7 +152,7 @@ static void remove_file(const char *directory, const char *name) {
   mem_free(path);
 }
 
-/* Removes a picture that talus plot has signed. */
+/* Remove a picture that talus plot has signed. */
 static void remove_picture(const char *directory, const char *name) {
   char part[2][HEAD], *path = output_path(directory, name);
   const int n = read_part(path, false, part[0]);

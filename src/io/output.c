@@ -15,7 +15,7 @@
 #include "talus/hdf5_file.h"
 #include "talus/memory.h"
 
-/* Runs of one rank may do without MPI (unit tests). */
+/* Broadcast a status; runs of one rank may do without MPI (unit tests). */
 static void broadcast(void *data, size_t bytes) {
   if (base_size() > 1)
     MPI_CHECK(MPI_Bcast(data, count_index((int64_t)bytes, "bytes"), MPI_BYTE, 0,

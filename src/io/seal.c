@@ -29,7 +29,7 @@ static uint32_t checksum(uint32_t start, const void *data, size_t n) {
   return (uint32_t)crc32(start, data, (uInt)n);
 }
 
-/* Writes the first SEAL_LENGTH bytes of a file with this seal. */
+/* Write the first SEAL_LENGTH bytes of a file with this seal. */
 static void print_seal(const struct seal *seal, char block[SEAL_LENGTH]) {
   memset(block, 0, SEAL_LENGTH);
   int n = snprintf(block, SEAL_LENGTH,
@@ -40,7 +40,7 @@ static void print_seal(const struct seal *seal, char block[SEAL_LENGTH]) {
   snprintf(block + n, SEAL_LENGTH - (size_t)n, "seal %08" PRIx32 "\n", own);
 }
 
-/* Reads the text back; false unless it is to the bit what we would print. */
+/* Read the text back; false unless it is to the bit what we would print. */
 static bool read_seal(const char block[SEAL_LENGTH], struct seal *seal) {
   char text[SEAL_LENGTH + 1], again[SEAL_LENGTH];
   memcpy(text, block, SEAL_LENGTH);
@@ -54,7 +54,7 @@ static bool read_seal(const char block[SEAL_LENGTH], struct seal *seal) {
   return memcmp(block, again, SEAL_LENGTH) == 0;
 }
 
-/* Reads n bytes from `place` on; returns 0 or an errno, EIO at the end. */
+/* Read n bytes from `place` on; returns 0 or an errno, EIO at the end. */
 static int read_bytes(int file, int64_t place, size_t n, char *data) {
   while (n > 0) {
     const ssize_t got = pread(file, data, n, (off_t)place);
@@ -65,7 +65,7 @@ static int read_bytes(int file, int64_t place, size_t n, char *data) {
   return 0;
 }
 
-/* Adds up the bytes [begin, end) of a file; returns 0 or an errno. */
+/* Add up the bytes [begin, end) of a file; returns 0 or an errno. */
 static int add_up(const char *path, int64_t begin, int64_t end, uint32_t *sum) {
   int file = open(path, O_RDONLY), error = file < 0 ? errno : 0;
   char *data = MEM_NEW(char, PIECE);
@@ -106,7 +106,7 @@ static int add_up_shares(MPI_Comm comm, const char *path, int64_t length,
   return error;
 }
 
-/* Puts the seal in its place and syncs the file; returns 0 or an errno. */
+/* Put the seal in its place and sync the file; returns 0 or an errno. */
 static int put_seal(const char *path, const char block[SEAL_LENGTH]) {
   int file = open(path, O_WRONLY), error = 0;
   if (file < 0) return errno;
@@ -140,7 +140,7 @@ void seal_write(MPI_Comm comm, const char *path, int format) {
   MPI_CHECK(MPI_Barrier(comm));
 }
 
-/* Reads what stands first in a file; false, with the reason, if that fails. */
+/* Read what stands first in a file; false, with the reason, if that fails. */
 static bool read_head(const char *path, char block[SEAL_LENGTH],
                       int64_t *length, struct seal_report *report) {
   struct stat status;
@@ -163,7 +163,7 @@ static bool read_head(const char *path, char block[SEAL_LENGTH],
   return error == 0;
 }
 
-/* Judges the head of a file by itself; SEAL_SOUND if the rest must decide. */
+/* Judge the head of a file by itself; SEAL_SOUND if the rest must decide. */
 static void judge_head(const char *path, struct seal *seal,
                        struct seal_report *report) {
   static const char first[] = "talus checkpoint\n";

@@ -250,7 +250,8 @@ int snapshots_count(const struct snapshots *snapshots) {
   return snapshots->count;
 }
 
-/* Names of the arrays on cells, for read_grid and for other readers. */
+/* Write the names of the arrays on cells, for read_grid and for other readers.
+ */
 static void write_list(struct hdf5_file *file, const struct xdmf_grid *grid) {
   char list[4096] = "";
   for (int k = 0; k < grid->narrays; k++) {

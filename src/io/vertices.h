@@ -19,8 +19,9 @@ struct vertices {
 void vertices_find(const struct mesh *mesh, struct vertices *vertices);
 void vertices_free(struct vertices *vertices);
 
-/* Places of the vertices [begin, begin + n) into x [n], m. *leaf says where
- * the walk is: 0 for the first call, later ones go on from the one before. */
+/* Give the places of the vertices [begin, begin + n) into x [n], m. *leaf says
+ * where the walk is: 0 for the first call, later ones go on from the one
+ * before. */
 void vertices_place(const struct mesh *mesh, const struct vertices *vertices,
                     int64_t begin, int64_t n, int32_t *leaf, double (*x)[DIM]);
 

@@ -38,8 +38,8 @@ static int column_level(const struct mesh *mesh, const int horizontal[2]) {
   return level;
 }
 
-/* Adds the height of one leaf to the columns that the leaf covers, or a share
- * of it where one column covers the leaf. */
+/* Add the height of one leaf to the columns that the leaf covers, or a share of
+ * it where one column covers the leaf. */
 static void add_leaf(const struct mesh *mesh, const int horizontal[2],
                      int32_t i, double c, struct outline *outline) {
   int begin[2] = {0, 0}, end[2] = {1, 1};

@@ -28,7 +28,7 @@ struct convergence_case {
 /* Begin the rows of a case, written to `csv` and to the terminal as they come.
  */
 struct report *report_new(const char *name, FILE *csv);
-/* Ends the report; returns the number of rows that failed. */
+/* End the report; returns the number of rows that failed. */
 int report_end(struct report *report);
 
 /* Report one value: as it is, or with the bar that it must not pass. */

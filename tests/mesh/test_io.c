@@ -234,7 +234,7 @@ static void write_one(const char *path, struct forest *forest, double time) {
   mesh_destroy(mesh);
 }
 
-/* Reads on `comm` what write_one wrote; *leaves: of this rank. */
+/* Read on `comm` what write_one wrote; *leaves: of this rank. */
 static bool read_one(MPI_Comm comm, const char *path,
                      const struct forest_layout *layout, double time,
                      int32_t *leaves) {

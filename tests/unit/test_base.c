@@ -18,7 +18,7 @@ Suite *base_suite(void);
 
 enum { TEXT_LENGTH = 8192 };
 
-/* Runs f in a child process and returns its exit status, -1 if a signal ended
+/* Run f in a child process and return its exit status, -1 if a signal ended
  * it; `words` [TEXT_LENGTH] is what it wrote on stderr. */
 static int run_in_child(void (*f)(void), char *words) {
   int ends[2];
