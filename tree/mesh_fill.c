@@ -137,8 +137,8 @@ void mesh_fill_potential(const struct mesh *mesh, const double *rho, int n,
   fill(mesh, rho, n, v, bc, homogeneous);
 }
 
-/* Average of the finer faces of a side; poison if nobody has set one of them,
- * as in a sweep along another axis. */
+/* Return the average of the finer faces of a side; poison if nobody has set one
+ * of them, as in a sweep along another axis. */
 static double mean_of_faces(const double *v, const int32_t face[NCHILD / 2]) {
   double sum = 0;
   for (int c = 0; c < NCHILD / 2; c++) {

@@ -51,7 +51,7 @@ struct skin {
       *leaf; /* [nleaves], all that are beside the surface; owned */
 };
 
-/* Owned by the caller. NULL is a skin without faces. */
+/* Make a skin, owned by the caller. NULL is a skin without faces. */
 struct skin *skin_new(void);
 void skin_destroy(struct skin *skin);
 
@@ -59,7 +59,7 @@ void skin_destroy(struct skin *skin);
 void skin_find(const struct mesh *mesh, const double *c, double ratio,
                struct skin *skin);
 
-/* h du/dx_t at a face, t not its axis. u filled. */
+/* Return h du/dx_t at a face, t not its axis. u filled. */
 double skin_difference(const struct mesh *mesh, const struct skin_face *face,
                        int t, const double *u);
 

@@ -37,7 +37,7 @@ enum { RHEOLOGY_BLOCK = 256 };
 /* tau_y = mu_s p, for closures whose first key is mu_s. */
 rheology_function rheology_friction;
 
-/* Selects, written so that NaN in `a` stays NaN. */
+/* Return the larger one, written so that NaN in `a` stays NaN. */
 static inline double at_least(double a, double low) {
   return a < low ? low : a;
 }

@@ -54,7 +54,8 @@ static int32_t add_inner(struct clean *clean, uint64_t key, int level) {
   return k;
 }
 
-/* One walk over the sorted leaves, with the open path from the root. */
+/* Link the nodes by one walk over the sorted leaves, with the open path from
+ * the root. */
 static void link_nodes(struct clean *clean, const struct mesh *mesh) {
   int32_t path[FOREST_MAX_LEVEL + 1];
   uint64_t path_key[FOREST_MAX_LEVEL + 1];
@@ -108,7 +109,7 @@ static void mark_straddling(struct clean *clean, const struct mesh *mesh) {
   clean->shared = MEM_NEW(double, (size_t)clean->nslots *NCHILD);
 }
 
-/* Numbers of the trees by place, from their first leaves. */
+/* Number the trees by place, from their first leaves. */
 static void number_trees(struct clean *clean, const struct mesh *mesh) {
   const struct forest_layout *layout = forest_layout(mesh->forest);
   clean->ntrees = 1;
@@ -196,7 +197,8 @@ double clean_divergence(const struct mesh *mesh, const double *u_f) {
   return mesh_max(mesh, most);
 }
 
-/* Net outflow of leaf i beyond what `source`, 1/s, asks for; NULL: none. */
+/* Return the net outflow of leaf i beyond what `source`, 1/s, asks for; NULL:
+ * none. */
 static double net_excess(const struct mesh *mesh, const double *source,
                          const double *u_f, int32_t i) {
   return mesh_outflow(mesh, u_f, i) -
@@ -223,8 +225,8 @@ static void balance_boundaries(struct clean *clean, const struct mesh *mesh,
   }
 }
 
-/* Net outflow of every node, from the leaves (in) up; the parts of straddling
- * nodes are added over ranks. */
+/* Gather the net outflow of every node, from the leaves (in) up; the parts of
+ * straddling nodes are added over ranks. */
 static void gather_net(struct clean *clean, const struct mesh *mesh) {
   const int32_t n = mesh->nleaves;
   if (mesh->nranks > 1) {
@@ -255,7 +257,8 @@ static void gather_net(struct clean *clean, const struct mesh *mesh) {
   }
 }
 
-/* Trees hand their excess down along the last axis first, towards place 0. */
+/* Let trees hand their excess down along the last axis first, towards place 0.
+ */
 static void balance_trees(struct clean *clean) {
   memset(clean->tree_change, 0,
          (size_t)clean->ntrees * sizeof *clean->tree_change);
@@ -275,7 +278,8 @@ static void balance_trees(struct clean *clean) {
   }
 }
 
-/* Changes on the faces between the children whose net outflows are N. */
+/* Find the changes on the faces between the children whose net outflows are N.
+ */
 static void share_out(const double net[NCHILD], double change[NCHILD][NFACE]) {
   double psi[NCHILD];
   memcpy(psi, net, sizeof psi);

@@ -7,7 +7,7 @@
 #include "levels.h"
 #include "talus/forest.h"
 
-/* q = A p for component c. */
+/* Set q = A p for component c. */
 static void apply(const struct hierarchy *h, int c, const double *p,
                   double *q) {
   const double *inverse = h->inverse[c];

@@ -57,8 +57,8 @@ static int32_t get_existing(struct linking *k, uint64_t key, int level) {
   return slot;
 }
 
-/* Slot of the node that covers (key, level); SLOT_UNKNOWN while its rank has
- * not been asked. */
+/* Return the slot of the node that covers (key, level); SLOT_UNKNOWN while its
+ * rank has not been asked. */
 static int32_t resolve(struct linking *k, struct questions *q, uint64_t key,
                        int level) {
   const uint64_t parent = level > 0 ? key_align(key, level - 1) : key;
@@ -144,7 +144,7 @@ static void make_plans(struct linking *k, int l) {
   mem_free(request);
 }
 
-/* Links of the wanted slots that could not be followed. */
+/* Find links of the wanted slots that could not be followed. */
 static void find_links(struct linking *k) {
   struct questions q = {.n = 0};
   hash_begin(&q.hash, 0);

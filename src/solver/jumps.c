@@ -6,8 +6,8 @@
 #include "talus/count.h"
 #include "talus/memory.h"
 
-/* Slopes of the coarse leaf: centred if both its neighbours are nodes of its
- * level, else one-sided. */
+/* Set the slopes of the coarse leaf: centred if both its neighbours are nodes
+ * of its level, else one-sided. */
 static void set_slopes(const struct linking *k, int l, struct jump *jump) {
   const struct hierarchy *h = k->h;
   const struct level *level = &h->level[l];
@@ -27,7 +27,7 @@ static void set_slopes(const struct linking *k, int l, struct jump *jump) {
   }
 }
 
-/* Faces of owned nodes beyond which lies a coarser leaf. */
+/* List the faces of owned nodes beyond which lies a coarser leaf. */
 static void list_jumps(struct linking *k, int l, bool count_only) {
   struct hierarchy *h = k->h;
   struct level *level = &h->level[l];

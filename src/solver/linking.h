@@ -32,39 +32,39 @@ struct linking {
 static inline uint64_t key_align(uint64_t key, int level) {
   return key & ~(morton_span(level) - 1);
 }
-/* Child number of a node of level l >= 1. */
+/* Return the child number of a node of level l >= 1. */
 static inline int key_child(uint64_t key, int level) {
   return (int)(key / morton_span(level)) & (NCHILD - 1);
 }
 
 /* Rank that owns the node of `level` at `key`, if it exists. */
 int linking_owner(const struct linking *k, int level, uint64_t key);
-/* Slot of an owned node, or SLOT_UNKNOWN. */
+/* Return the slot of an owned node, or SLOT_UNKNOWN. */
 int32_t linking_find(const struct linking *k, int level, uint64_t key);
-/* Level of any slot. */
+/* Return the level of any slot. */
 int linking_level(const struct linking *k, int32_t slot);
-/* Key of the node at an offset of -1, 0 or 1 sizes along each axis; axes that
- * would leave the domain are dropped, and returned as a mask. */
+/* Return the key of the node at an offset of -1, 0 or 1 sizes along each axis;
+ * axes that would leave the domain are dropped, and returned as a mask. */
 int linking_place(const struct linking *k, uint64_t key, int level,
                   const int offset[DIM], uint64_t *neighbour);
 
-/* Neighbours of owned nodes, from the root down (links.c). */
+/* Find the neighbours of owned nodes, from the root down (links.c). */
 void links_make(struct linking *k);
 /* Make room for the links of the first n slots, those of ghosts unknown. */
 void links_grow(struct linking *k, int32_t n);
-/* Offsets that a face, a corner entry stands for. */
+/* Give the offsets that a face or a corner entry stands for. */
 void links_face_offset(int face, int offset[DIM]);
 void links_corner_offset(int entry, int offset[DIM]);
 
-/* Faces beyond which lies a coarser leaf (jumps.c). */
+/* Find the faces beyond which lies a coarser leaf (jumps.c). */
 void jumps_make(struct linking *k);
 
-/* Images beyond walls, once the jumps are known (mirrors.c). */
+/* Make the images beyond walls, once the jumps are known (mirrors.c). */
 void mirrors_make(struct linking *k);
 
-/* Ghost slot of a node of another rank, made if new (ghosts.c). */
+/* Return the ghost slot of a node of another rank, made if new (ghosts.c). */
 int32_t ghosts_get(struct linking *k, uint64_t key, int level);
-/* Links to other ranks and message plans. Collective. */
+/* Make links to other ranks and message plans. Collective. */
 void ghosts_make(struct linking *k);
 
 #endif

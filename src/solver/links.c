@@ -40,7 +40,7 @@ static void link_trees(struct linking *k) {
   }
 }
 
-/* Child c of node `above`, one level up, or `above` if it is a leaf. */
+/* Return child c of node `above`, one level up, or `above` if it is a leaf. */
 static inline int32_t child_of(const struct linking *k, int l, int32_t above,
                                int c) {
   if (above < 0) return SLOT_UNKNOWN;
@@ -111,7 +111,7 @@ static void link_corners(struct linking *k, int l, int32_t family, int c) {
   }
 }
 
-/* Keys and levels of owned slots, for the search of nodes elsewhere. */
+/* List keys and levels of owned slots, for the search of nodes elsewhere. */
 static void list_keys(struct linking *k) {
   const struct hierarchy *h = k->h;
   for (int32_t i = 0; i < h->level[0].nowned; i++) {

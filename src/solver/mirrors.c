@@ -7,7 +7,7 @@
 #include "talus/count.h"
 #include "talus/memory.h"
 
-/* Slot of a new image. */
+/* Add an image and return its slot. */
 static int32_t add_mirror(struct linking *k, int32_t source, int patch) {
   struct hierarchy *h = k->h;
   if (h->nmirrors == k->mirror_capacity) {
@@ -28,8 +28,8 @@ static void link_faces(struct linking *k, const struct side *side) {
   }
 }
 
-/* Diagonal nodes are images of the neighbours along the wall, which may be
- * another rank's and then have none yet. */
+/* Link diagonal nodes beyond walls: images of the neighbours along the wall,
+ * which may be another rank's and then have none yet. */
 static void link_corners(struct linking *k, const struct side *side, int a,
                          int upper) {
   struct hierarchy *h = k->h;

@@ -26,8 +26,8 @@ static bool is_rough(const struct hierarchy *h, int32_t i) {
   return most > ROUGH_JUMP * least;
 }
 
-/* mark: 1 at a jump, n + 1 in n nodes' distance, 0 far away. Virtual children
- * and images have none. */
+/* Set mark to 1 at a jump, n + 1 in n nodes' distance, 0 far away. Virtual
+ * children and images have none. */
 static void set_marks(const struct hierarchy *h, double *mark) {
   const size_t n = (size_t)(h->nslots + h->njumps + h->nmirrors);
   memset(mark, 0, n * sizeof *mark);

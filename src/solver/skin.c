@@ -20,7 +20,8 @@ void skin_destroy(struct skin *skin) {
   mem_free(skin);
 }
 
-/* Places of the nodes of face f of axis d in the stencil of its owner. */
+/* Give the places of the nodes of face f of axis d in the stencil of its owner.
+ */
 static inline void face_places(const struct mesh *mesh, int d, int32_t f,
                                int place[2]) {
   const bool lower = mesh->face_node[f][0] == mesh->face_owner[f];
@@ -28,14 +29,14 @@ static inline void face_places(const struct mesh *mesh, int d, int32_t f,
   place[1] = place[0] + stencil_step(d);
 }
 
-/* Part of the mass of a node that is grains. */
+/* Return the part of the mass of a node that is grains. */
 static inline double grain_part(double c, double ratio) {
   c = min2(max2(c, 0), 1);
   return c / (c + (1 - c) * ratio);
 }
 
-/* Weights of the lines along t of face f of axis d, `grains` being M and m that
- * of the stencil; false if all are whole. */
+/* Weigh the lines along t of face f of axis d, `grains` being M and m that of
+ * the stencil; returns false if all are whole. */
 static bool weigh_lines(const struct mesh *mesh, int d, int32_t f, int t,
                         const double *m, double grains,
                         struct skin_face *face) {

@@ -260,7 +260,7 @@ START_TEST(every_face_joins_its_neighbours) {
 }
 END_TEST
 
-/* Poisoned values among [begin, end). */
+/* Count the poisoned values among [begin, end). */
 static int32_t count_poison(const double *v, int32_t begin, int32_t end) {
   int32_t n = 0;
   for (int32_t i = begin; i < end; i++) n += is_poison(&v[i]);
