@@ -59,6 +59,24 @@ static inline struct forest *grid_new(MPI_Comm comm, int trees, bool periodic,
   return forest;
 }
 
+/* Make a brick that lies anywhere, of edges 1/2, with another number of trees
+ * along each axis, refined around its lowest corner and a place on its upper
+ * side: with periodic sides leaves of two levels meet there. */
+static inline struct forest *grid_brick(bool periodic, int base, int level) {
+  struct forest_layout layout = {.size = 0.5};
+  double corner[DIM], upper[DIM];
+  for (int d = 0; d < DIM; d++) {
+    layout.origin[d] = corner[d] = d == 0 ? -1.2 : 7.3 - d;
+    layout.trees[d] = 3 - d;
+    layout.periodic[d] = periodic;
+    upper[d] = corner[d] + layout.size * layout.trees[d] * (d == 0 ? 1 : 0.5);
+  }
+  struct forest *forest = forest_new(MPI_COMM_WORLD, &layout, base);
+  grid_refine(forest, corner, 0.2, level);
+  grid_refine(forest, upper, 0.2, level);
+  return forest;
+}
+
 /* Is a condition true on every rank? */
 static inline bool all_ranks(bool good) {
   int value = good;

@@ -55,6 +55,31 @@ START_TEST(map_covers_all_volume) {
 }
 END_TEST
 
+/* Centres of the new leaves are those of a mesh made of them. */
+START_TEST(map_knows_where_leaves_lie) {
+  struct forest *forest = grid_brick(false, 1, 3);
+  const int32_t n = forest_nleaves(forest);
+  int8_t *flag = MEM_NEW(int8_t, n);
+  for (int32_t i = 0; i < n; i++) flag[i] = i % 5 == 0 ? 1 : -1;
+  struct forest_map map;
+  const bool changed = forest_adapt(forest, flag, 0, 4, &map);
+  struct mesh *mesh = mesh_new(forest);
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int d = 0; d < DIM; d++) {
+      most = larger(most, fabs(map.x[i][d] - mesh->x[i][d]));
+    }
+  }
+  most = mesh_max(mesh, most);
+  mesh_destroy(mesh);
+  forest_map_destroy(&map);
+  mem_free(flag);
+  forest_destroy(forest);
+  ck_assert(changed);
+  ck_assert_double_le(most, 1e-14);
+}
+END_TEST
+
 START_TEST(partition_moves_data_with_leaves) {
   struct forest *forest = grid_new(MPI_COMM_WORLD, 1, true, 3, 3);
   struct mesh *mesh = mesh_new(forest);
@@ -93,6 +118,7 @@ Suite *forest_suite(void) {
   TCase *tc = tcase_create("forest");
   tcase_add_test(tc, levels_rebuild_the_forest);
   tcase_add_test(tc, map_covers_all_volume);
+  tcase_add_test(tc, map_knows_where_leaves_lie);
   tcase_add_test(tc, partition_moves_data_with_leaves);
   suite_add_tcase(suite, tc);
   return suite;

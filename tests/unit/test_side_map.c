@@ -158,6 +158,7 @@ START_TEST(box_lists_what_is_in_it) {
     /* to the face: a part of one is taken for all of it */
     if (k == 2) continue;
     ck_assert_uint_eq(side_map_within(map, lo, hi) & expected[k], expected[k]);
+    ck_assert_uint_eq(side_map_within(map, lo, hi) & ~(wall | slot), 0);
     if (k == 0 || k == 5) {
       ck_assert_uint_eq(side_map_within(map, lo, hi), wall);
     }
