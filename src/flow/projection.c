@@ -15,7 +15,7 @@ struct solve_stats projection_project(const struct projection *projection,
     projection->rhs[i] = mesh_net(mesh, u_f, i) / (mesh_width(mesh, i) * dt);
   }
   struct solve_stats stats = poisson_solve(
-      mesh, projection->hierarchy, projection->alpha_f, projection->rho,
+      mesh, projection->hierarchy, projection->alpha_f, NULL, projection->rho,
       projection->rhs, projection->bc, projection->tolerance / (dt * dt),
       projection->max_iterations, p);
   poisson_flux(mesh, projection->alpha_f, p, projection->flux);

@@ -97,6 +97,7 @@ struct hierarchy {
   struct mirror *mirror;
   /* Operator: set by coefficients_set for each solve */
   int nparts;           /* 1, or DIM: velocity */
+  bool has_mass;        /* somewhere, perhaps */
   float *w[NFACE];      /* [nslots] alpha area / distance, 0 at a wall;
                            the inverse is exactly that of what is rounded */
   double *inverse[DIM]; /* [nslots] 1 / diagonal, 0 if it is 0 */

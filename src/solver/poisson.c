@@ -9,7 +9,7 @@
 struct context {
   const struct mesh *mesh;
   struct hierarchy *h;
-  const double *alpha_f, *rho, *rhs;
+  const double *alpha_f, *mass, *rho, *rhs;
   const struct bc *bc;
   double excess; /* taken from rhs */
 };
@@ -23,18 +23,14 @@ void poisson_flux(const struct mesh *mesh, const double *alpha_f,
   mesh_fill_faces(mesh, 1, (double *const[]){flux});
 }
 
-/* q = div(alpha grad p), p filled; q may be p. */
-static void divergence(const struct context *k, const double *p, double *q) {
+/* q = div(alpha grad p) - mass p, p filled; q may be p. */
+static void operate(const struct context *k, const double *p, double *q) {
   const struct mesh *mesh = k->mesh;
   double *flux = k->h->work_faces;
   poisson_flux(mesh, k->alpha_f, p, flux);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t *face = mesh->cell_face[i];
-    double sum = 0;
-    for (int d = 0; d < DIM; d++) {
-      sum += flux[face[2 * d + 1]] - flux[face[2 * d]];
-    }
-    q[i] = sum / mesh->h[i];
+    const double divergence = mesh_divergence(mesh, flux, i);
+    q[i] = k->mass ? divergence - k->mass[i] * p[i] : divergence;
   }
 }
 
@@ -43,14 +39,14 @@ static void apply(void *context, float *const z[2], double *q[]) {
   double *p = k->h->work_cells;
   krylov_direction(k->mesh->nleaves, 0, z, p);
   mesh_fill_potential(k->mesh, k->rho, 1, &p, &k->bc, true);
-  divergence(k, p, p);
+  operate(k, p, p);
   q[0] = p;
 }
 
 static void residual(void *context, double *const p[], double *r) {
   const struct context *k = context;
   mesh_fill_potential(k->mesh, k->rho, 1, p, &k->bc, false);
-  divergence(k, p[0], r);
+  operate(k, p[0], r);
   for (int32_t i = 0; i < k->mesh->nleaves; i++) {
     r[i] = k->rhs[i] - k->excess - r[i];
   }
@@ -63,10 +59,13 @@ static void precondition(void *context, const double *r, double size,
   cycle_run(k->h, -1 / size, r, z);
 }
 
-/* Does any face fix p itself? */
+/* Does any face or any mass fix p itself? */
 static bool has_level(const struct mesh *mesh, const double *alpha_f,
-                      const struct bc *bc) {
+                      const double *mass, const struct bc *bc) {
   double found = 0;
+  for (int32_t i = 0; i < mesh->nleaves && mass; i++) {
+    if (mass[i] > 0) found = 1;
+  }
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int patch = mesh->face_patch[f];
     if (patch >= 0 && bc[patch].type != BC_NEUMANN && alpha_f[f] > 0) {
@@ -102,7 +101,7 @@ static void shift(const struct mesh *mesh, double a, double *v) {
 
 static void prepare(void *context) {
   const struct context *k = context;
-  coefficients_set(k->h, 1, k->alpha_f, 1, NULL, &k->bc);
+  coefficients_set(k->h, 1, k->alpha_f, 1, k->mass, &k->bc);
 }
 
 /* Solve with p determined up to a constant. */
@@ -129,12 +128,12 @@ static struct solve_stats solve_singular(const struct krylov_system *system,
 }
 
 struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
-                                 const double *alpha_f, const double *rho,
-                                 const double *rhs, const struct bc *bc,
-                                 double tolerance, int max_iterations,
-                                 double *p) {
+                                 const double *alpha_f, const double *mass,
+                                 const double *rho, const double *rhs,
+                                 const struct bc *bc, double tolerance,
+                                 int max_iterations, double *p) {
   CHECK(h->revision == mesh->revision, "hierarchy of an older mesh");
-  struct context context = {mesh, h, alpha_f, rho, rhs, bc, 0};
+  struct context context = {mesh, h, alpha_f, mass, rho, rhs, bc, 0};
   const struct krylov_system system = {.comm = mesh->comm,
                                        .n = mesh->nleaves,
                                        .nparts = 1,
@@ -147,7 +146,7 @@ struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
   double *r = h->residual;
   residual(&context, &p, r);
   struct solve_stats stats =
-      has_level(mesh, alpha_f, bc)
+      has_level(mesh, alpha_f, mass, bc)
           ? krylov_solve(&system, h->krylov, tolerance, max_iterations, r, &p)
           : solve_singular(&system, tolerance, max_iterations, p);
   mesh_fill_potential(mesh, rho, 1, &p, &bc, false);

@@ -249,8 +249,8 @@ static void solve_velocity(struct two_phase *sim, double most, double *w) {
   }
   mesh_fill_faces(mesh, 1, &alpha);
   memset(psi, 0, (size_t)mesh->ncells * sizeof *psi);
-  poisson_solve(mesh, sim->grid.hierarchy, alpha, NULL, sim->source->v, bc,
-                TOLERANCE * most, sim->params->max_iterations, psi);
+  poisson_solve(mesh, sim->grid.hierarchy, alpha, NULL, NULL, sim->source->v,
+                bc, TOLERANCE * most, sim->params->max_iterations, psi);
   poisson_flux(mesh, alpha, psi, w);
   scratch_give(&sim->scratch, __func__);
 }

@@ -106,7 +106,7 @@ static struct norms solve(const void *context, enum grid_kind grid, int level) {
   }
   balance(problem, mesh, alpha_f, rhs);
   const struct solve_stats stats =
-      poisson_solve(mesh, hierarchy, alpha_f, NULL, rhs, bc,
+      poisson_solve(mesh, hierarchy, alpha_f, NULL, NULL, rhs, bc,
                     1e-8 * largest_size(mesh, rhs), MOST, p);
   struct norms norms = error_of(problem, mesh, p);
   if (stats.status != SOLVE_CONVERGED) norms.l2 = norms.most = NAN;

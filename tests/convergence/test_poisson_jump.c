@@ -33,7 +33,7 @@ static int iterations(int base, int level, bool inside_is_heavy) {
   }
   remove_mean(mesh, rhs);
   const struct solve_stats stats =
-      poisson_solve(mesh, hierarchy, alpha_f, NULL, rhs, bc,
+      poisson_solve(mesh, hierarchy, alpha_f, NULL, NULL, rhs, bc,
                     1e-8 * largest_size(mesh, rhs), MOST, p);
   mem_free(alpha_f), mem_free(rhs), mem_free(p);
   hierarchy_destroy(hierarchy);
