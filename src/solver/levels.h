@@ -22,6 +22,7 @@ enum {
   NPAIR = DIM * (DIM - 1) / 2, /* pairs of axes */
   NCORNER = 4 * NPAIR,         /* nodes diagonally across an edge (3D) or a
                                   corner (2D) */
+  SWEEP_BLOCK = 64,            /* nodes that are taken together */
   LEVEL_GATHERED = 256         /* nodes of a level that one rank does alone */
 };
 
@@ -156,6 +157,21 @@ static inline int corner_entry(int a, int upper_a, int b, int upper_b) {
 void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
                       double factor, const double *mass,
                       const struct bc *const bc[]);
+/* Relax run q of a level (sweep.c), the nodes of one child number. */
+void sweep_relax(struct hierarchy *h, const struct level *level, int q);
+/* Relax n nodes one by one; node [n]. */
+void sweep_relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node);
+/* Runs whose nodes have a residual after a sweep. Those relaxed last have none:
+ * black nodes of a single component; of a velocity the last child, but for what
+ * its image beyond a wall has changed since. */
+static inline int sweep_residual_runs(int nparts) {
+  return nparts > 1 ? NCHILD - 1 : HALF;
+}
+/* Add the residuals of n <= SWEEP_BLOCK nodes of such a run, from number
+ * `first` on, to sum [nparts]. */
+void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
+                         int q, int32_t first, int32_t n,
+                         double (*sum)[SWEEP_BLOCK]);
 /* e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times
  * `factor`; e likewise, e[0] rounded and e[1] what that misses, if it is not
  * NULL. Collective. */

@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Gauss-Seidel on the nodes of one child number, and their residuals. See
+ * hierarchy.h for the formulas.
+ *
+ * What a node is pulled to by its neighbours is written once for `nparts`
+ * components and compiled for 1 and DIM, and for each child number: siblings
+ * are then a fixed number of slots away, which leaves half of the neighbours to
+ * be looked up. Nodes of one child number do not see each other, so that their
+ * loops may use vectors (ivdep). These loops are most of the time of a cycle.
+ * In 3D they take seconds to compile, so that each is compiled once. */
+#include <float.h>
+
+#include "levels.h"
+
+enum { ANY_CHILD = -1 /* nodes taken one by one */ };
+
+#define KERNEL static inline __attribute__((always_inline))
+
+/* Nodes of one child number. */
+struct run {
+  int child; /* or ANY_CHILD */
+  int32_t n; /* slots of each child number */
+  int32_t begin;
+};
+
+KERNEL struct run run_of(const struct level *level, int child) {
+  return (struct run){child, level->nfamilies, family_slot(level, 0, child)};
+}
+
+/* Slots from a child to its sibling. */
+KERNEL int32_t sibling_step(struct run run, int sibling) {
+  const struct level one = {.nfamilies = 1};
+  return (family_slot(&one, 0, sibling) - family_slot(&one, 0, run.child)) *
+         run.n;
+}
+
+KERNEL bool is_inside(struct run run, int d, int upper) {
+  return run.child != ANY_CHILD && (run.child >> d & 1) != upper;
+}
+
+/* Node beyond face f of node i. */
+KERNEL int32_t across(const struct hierarchy *h, struct run run, int32_t i,
+                      int f) {
+  return is_inside(run, f >> 1, f & 1)
+             ? i + sibling_step(run, run.child ^ 1 << (f >> 1))
+             : h->neighbour[f][i];
+}
+
+/* Node one step away from node i along axes a != b. */
+KERNEL int32_t diagonal(const struct hierarchy *h, struct run run, int32_t i,
+                        int a, int upper_a, int b, int upper_b) {
+  return is_inside(run, a, upper_a) && is_inside(run, b, upper_b)
+             ? i + sibling_step(run, run.child ^ 1 << a ^ 1 << b)
+             : h->corner[corner_entry(a, upper_a, b, upper_b)][i];
+}
+
+/* Stress of the transposed gradient, integrated over the sides of node i: on
+ * a face of direction d, differences along axis c of component d, summed over
+ * both sides of the face, are 4 h times du_d/dx_c there. */
+KERNEL double transposed(const struct hierarchy *h, struct run run, int32_t i,
+                         int c) {
+  double sum = 0;
+#pragma GCC unroll 3
+  for (int d = 0; d < DIM; d++) {
+    if (d == c) continue;
+    const double *v = h->e[d];
+    const double centre =
+        v[across(h, run, i, 2 * c + 1)] - v[across(h, run, i, 2 * c)];
+    const double upper = centre + v[diagonal(h, run, i, c, 1, d, 1)] -
+                         v[diagonal(h, run, i, c, 0, d, 1)];
+    const double lower = centre + v[diagonal(h, run, i, c, 1, d, 0)] -
+                         v[diagonal(h, run, i, c, 0, d, 0)];
+    sum += (double)h->w[2 * d + 1][i] * upper - (double)h->w[2 * d][i] * lower;
+  }
+  return 0.25 * sum;
+}
+
+/* r_i + sum of what the neighbours contribute. */
+KERNEL double pull(const struct hierarchy *h, struct run run, int32_t i, int c,
+                   int nparts) {
+  double sum = h->r[c][i];
+#pragma GCC unroll 6
+  for (int f = 0; f < NFACE; f++) {
+    const double w = (double)h->w[f][i] * h->e[c][across(h, run, i, f)];
+    sum += nparts > 1 && f >> 1 == c ? 2 * w : w;
+  }
+  return nparts > 1 ? sum + transposed(h, run, i, c) : sum;
+}
+
+KERNEL void relax_node(struct hierarchy *h, struct run run, int32_t i,
+                       int nparts) {
+  double e[DIM];
+#pragma GCC unroll 3
+  for (int c = 0; c < nparts; c++) {
+    e[c] = h->inverse[c][i] * pull(h, run, i, c, nparts);
+  }
+#pragma GCC unroll 3
+  for (int c = 0; c < nparts; c++) h->e[c][i] = e[c];
+}
+
+/* One copy for each child number. */
+KERNEL void relax_run(struct hierarchy *h, const struct level *level, int q,
+                      int nparts) {
+#pragma GCC unroll 8
+  for (int number = 0; number < NCHILD; number++) {
+    const struct run run = run_of(level, run_child(number));
+    if (number != q) continue;
+#pragma GCC ivdep
+    for (int32_t i = run.begin; i < run.begin + run.n; i++) {
+      relax_node(h, run, i, nparts);
+    }
+  }
+}
+
+static void relax_scalar(struct hierarchy *h, const struct level *level,
+                         int q) {
+  relax_run(h, level, q, 1);
+}
+
+static void relax_velocity(struct hierarchy *h, const struct level *level,
+                           int q) {
+  relax_run(h, level, q, DIM);
+}
+
+void sweep_relax(struct hierarchy *h, const struct level *level, int q) {
+  if (h->nparts > 1) {
+    relax_velocity(h, level, q);
+  } else {
+    relax_scalar(h, level, q);
+  }
+}
+
+/* e is 0 where the inverse is. */
+KERNEL double residual(const struct hierarchy *h, struct run run, int32_t i,
+                       int c, int nparts) {
+  return pull(h, run, i, c, nparts) - h->e[c][i] / (h->inverse[c][i] + DBL_MIN);
+}
+
+KERNEL void add_residuals(const struct hierarchy *h, const struct level *level,
+                          int q, int32_t first, int32_t n,
+                          double (*restrict sum)[SWEEP_BLOCK], int nparts) {
+  const int nruns = sweep_residual_runs(nparts);
+#pragma GCC unroll 8
+  for (int number = 0; number < nruns; number++) {
+    const struct run run = run_of(level, run_child(number));
+    if (number != q) continue;
+#pragma GCC ivdep
+    for (int32_t k = 0; k < n; k++) {
+#pragma GCC unroll 3
+      for (int c = 0; c < nparts; c++) {
+        sum[c][k] += residual(h, run, run.begin + first + k, c, nparts);
+      }
+    }
+  }
+}
+
+static void residuals_scalar(const struct hierarchy *h,
+                             const struct level *level, int q, int32_t first,
+                             int32_t n, double (*sum)[SWEEP_BLOCK]) {
+  add_residuals(h, level, q, first, n, sum, 1);
+}
+
+static void residuals_velocity(const struct hierarchy *h,
+                               const struct level *level, int q, int32_t first,
+                               int32_t n, double (*sum)[SWEEP_BLOCK]) {
+  add_residuals(h, level, q, first, n, sum, DIM);
+}
+
+void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
+                         int q, int32_t first, int32_t n,
+                         double (*sum)[SWEEP_BLOCK]) {
+  if (h->nparts > 1) {
+    residuals_velocity(h, level, q, first, n, sum);
+  } else {
+    residuals_scalar(h, level, q, first, n, sum);
+  }
+}
+
+KERNEL void relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node,
+                        int nparts) {
+  const struct run any = {.child = ANY_CHILD};
+  for (int32_t k = 0; k < n; k++) relax_node(h, any, node[k], nparts);
+}
+
+void sweep_relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node) {
+  if (h->nparts > 1) {
+    relax_nodes(h, n, node, DIM);
+  } else {
+    relax_nodes(h, n, node, 1);
+  }
+}
