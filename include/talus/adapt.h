@@ -16,7 +16,7 @@
 struct field;
 struct grid;
 
-/* Cells by which a band is widened before a leaf may be merged. */
+/* Cells by which a criterion is widened before a leaf may be merged. */
 enum { ADAPT_HYSTERESIS = 2 };
 
 /* The fields of a model that the criteria look at. */

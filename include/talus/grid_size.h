@@ -3,7 +3,7 @@
  *
  * Leaves are counted by walking down the tree level by level. On each a cell is
  * divided where a criterion wants it finer, as adapt.c would do, the functions
- * of the case sampled on a lattice over the cell and the band around it. Of
+ * of the case sampled on a lattice over the cell and what is around it. Of
  * more than some hundred cells of a level a random one in each stretch of
  * Morton order stands for all of that stretch: the sum over them is an unbiased
  * estimate, and the work grows with the number of levels only. A uniform grid

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Momentum carried with the volume fraction near the interface.
+/* Momentum carried with the volume fraction near the surface.
  *
- * In leaves near the interface (the band) the momentum rho u rides in the
+ * In leaves near the surface (the band) the momentum rho u rides in the
  * sweeps of vof.h, with the mass flux that moves c:
  *   M = rho_1 F + rho_2 (u_f - F),
  *   rho* u* = rho u - dt/h [M u^up]_d + rho_cc u_0 dt/h [u_f]_d,

@@ -87,7 +87,7 @@ struct criterion {
   enum criterion_type type;
   enum criterion_phase only;
   int level;        /* finest level asked for */
-  double width;     /* INTERFACE: half-width of the band, in finest cells */
+  double width;     /* INTERFACE: finest cells on either side of the surface */
   double threshold; /* ESTIMATE: in units of velocity */
   struct function function; /* FUNCTION: level as a real number */
 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Planes that cut a cell: the geometry behind a piecewise-linear (PLIC)
- * interface. Pure functions, no allocation, no state.
+ * surface. Pure functions, no allocation, no state.
  *
  * The cell is the unit cube centred on the origin, [-1/2, 1/2]^DIM; every
  * length below is in cell widths. The grains fill the half space
@@ -72,14 +72,14 @@ double plane_box_volume(const double n[DIM], double alpha, const double lo[DIM],
                         const double hi[DIM]);
 
 /*
- * Find the centroid x of the interface inside the cell: midpoint of the segment
+ * Find the centroid x of the surface inside the cell: midpoint of the segment
  * (2D), centroid of the polygon (3D). A plane that misses the cell gives its
  * nearest corner, edge or face; n = 0 gives the centre of the cell.
  */
 void plane_centroid(const double n[DIM], double alpha, double x[DIM]);
 
 /*
- * Find the normal of the interface, |n|_1 = 1, from the volume fractions of the
+ * Find the normal of the surface, |n|_1 = 1, from the volume fractions of the
  * cell and its neighbours: exact for a plane, and the mixed Youngs-centred
  * normal [aulisa_2007] where no plane fits.
  *
@@ -103,7 +103,7 @@ void plane_centroid(const double n[DIM], double alpha, double x[DIM]);
  *   n = n_m + w (n_f - n_m),  w = max(1 - E(n_f)/E(n_m), E(n_m)/E_r) <= 1  (4)
  *
  * that is n_f for a plane, where E falls to round-off, and nearly n_m on a
- * curved interface, where E hardly falls and n_f is worse. Where n_m misses the
+ * curved surface, where E hardly falls and n_f is worse. Where n_m misses the
  * stencil by more than E_r = 0.1 (2D) or 1 (3D), as in threads one or two cells
  * wide, n_f keeps threads whole (docs/notes/planes.md). n_m stays if it fits to
  * 1e-13, if no step lowers E, or if c_0 is not in (0, 1).

@@ -22,7 +22,7 @@
 
 #include "talus/field.h"
 
-/* A leaf is cut by the interface when c lies strictly between these. */
+/* A leaf is cut by the surface when c lies strictly between these. */
 #define VOF_EMPTY 1e-12
 /* Up to this 1/2 sum |u_f| A dt / V a sweep keeps c in [0, 1]. */
 #define VOF_CFL 0.5

@@ -165,7 +165,7 @@ static const struct key BOUNDARY_OPTIONS[] = {
 
 static const struct criterion_kind CRITERION_KINDS[] = {
     {"interface", CRITERION_INTERFACE, {"width", "level", "only"},
-     "a band around the surface of the grains"},
+     "the surface of the grains and cells around it"},
     {"inside", CRITERION_INSIDE, {"level"}, "all of the grains"},
     {"velocity", CRITERION_ESTIMATE, {"threshold", "level", "only"},
      "where the wavelet estimate of the velocity's error is large"},
@@ -177,7 +177,8 @@ static const struct criterion_kind CRITERION_KINDS[] = {
 #define AT(member) offsetof(struct criterion, member)
 static const struct key CRITERION_OPTIONS[] = {
     {"width", KEY_NUMBER, .low = 0, .high = 1000, .above = true, KEY_DEFAULT "3",
-     .unit = "cells", .offset = AT(width), .help = "half of the band's width"},
+     .unit = "cells", .offset = AT(width),
+     .help = "cells on either side of the surface"},
     {"threshold", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "m/s",
      .offset = AT(threshold), .help = "largest error left alone"},
     {"level", KEY_LEVEL, SOME_LEVEL, KEY_DEFAULT "domain.level", .unit = "",

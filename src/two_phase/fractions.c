@@ -80,7 +80,7 @@ static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
   end_tracer(sim);
 }
 
-/* Sweep c with its cc, and u near the interface. u and c are filled. */
+/* Sweep c with its cc, and u in the band. u and c are filled. */
 static void sweep_grains(struct two_phase *sim, int d, double dt,
                          const double *u_f, double *cc) {
   const struct mesh *mesh = sim->grid.mesh;

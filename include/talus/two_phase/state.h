@@ -108,7 +108,7 @@ struct two_phase {
 struct two_phase *two_phase_new_on(const struct params *params,
                                    struct forest *forest);
 void two_phase_destroy(struct two_phase *sim);
-/* Give the densities of grains and gas, which without an interface are the
+/* Give the densities of grains and gas, which without a surface are the
  * same. */
 void two_phase_densities(const struct two_phase *sim, double density[2]);
 /* Give the fields that the criteria of adaptation look at. */
