@@ -70,8 +70,8 @@
 
 struct hierarchy;
 
-/* Levels above the leaves of `mesh`, which must outlive the hierarchy. Build
- * it anew when the mesh changes. The caller owns it. Collective. */
+/* Make the levels above the leaves of `mesh`, which must outlive the hierarchy.
+ * Build it anew when the mesh changes. The caller owns it. Collective. */
 struct hierarchy *hierarchy_new(const struct mesh *mesh);
 void hierarchy_destroy(struct hierarchy *hierarchy);
 

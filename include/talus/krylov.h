@@ -68,7 +68,7 @@ struct krylov_system {
   const double *density; /* [n] rho, same for all parts; NULL: 1 */
 };
 
-/* v [n] = n numbers of a direction from number `at` on. */
+/* Set v [n] to n numbers of a direction from number `at` on. */
 static inline void krylov_direction(int32_t n, int64_t at, float *const z[2],
                                     double *v) {
   for (int32_t i = 0; i < n; i++) v[i] = (double)z[0][at + i];

@@ -36,7 +36,8 @@ static void restrict_families(struct hierarchy *h, const struct level *level) {
   }
 }
 
-/* Flux of component c of a velocity through a jump: transposed gradient. */
+/* Return the flux of component c of a velocity through a jump: transposed
+ * gradient. */
 static double transposed_flux(const struct hierarchy *h,
                               const struct jump *jump, int c) {
   const int d = jump->face >> 1, upper = jump->face & 1;
@@ -66,7 +67,7 @@ static void restrict_jumps(struct hierarchy *h, const struct level *level) {
   }
 }
 
-/* Virtual children of coarser leaves. */
+/* Prolong to the virtual children of coarser leaves. */
 static void prolong_jumps(struct hierarchy *h, const struct level *level) {
   for (int32_t k = level->jump_begin; k < level->jump_end; k++) {
     const struct jump *jump = &h->jump[k];
@@ -82,8 +83,8 @@ static void prolong_jumps(struct hierarchy *h, const struct level *level) {
   }
 }
 
-/* Component c, n families of level l from `first` on, children from run
- * `begin` on. */
+/* Prolong component c of n families of level l from `first` on, children from
+ * run `begin` on. */
 static void prolong_block(struct hierarchy *h, int l, int c, int32_t first,
                           int32_t n, int begin) {
   const struct level *level = &h->level[l];
@@ -128,7 +129,7 @@ static void copy_ghosts(struct hierarchy *h, int l) {
   plan_run(&h->level[l].copy, h->nparts, h->e, 1, false);
 }
 
-/* Images beyond walls. */
+/* Set the images beyond walls. */
 static void reflect(struct hierarchy *h, int l) {
   const struct level *level = &h->level[l];
   for (int c = 0; c < h->nparts; c++) {
@@ -156,7 +157,7 @@ static void end_run(struct hierarchy *h, int l, int q) {
   if (velocity) reflect(h, l);
 }
 
-/* Sweeps over the nodes near jumps of the coefficient. */
+/* Sweep over the nodes near jumps of the coefficient. */
 static void smooth_rough(struct hierarchy *h, int l) {
   for (int k = 0; k < h->rough_sweeps; k++) {
     for (int q = 0; q < NCHILD; q++) {
@@ -167,7 +168,7 @@ static void smooth_rough(struct hierarchy *h, int l) {
   }
 }
 
-/* Sweeps over the colours. The last sweep goes over all, as no residual may be
+/* Sweep over the colours. The last sweep goes over all, as no residual may be
  * left on nodes relaxed last. */
 static void smooth(struct hierarchy *h, int l, int nsweeps, bool from_zero) {
   const int nfirst = h->nparts > 1 ? 1 : HALF; /* runs that see only zeros */

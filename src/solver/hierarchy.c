@@ -15,14 +15,14 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 
-/* Coarsest level of which a node has its first corner at `key`. */
+/* Return the coarsest level of which a node has its first corner at `key`. */
 static int coarsest_at(uint64_t key) {
   const uint64_t morton = key & (morton_span(0) - 1);
   if (morton == 0) return 0;
   return FOREST_MAX_LEVEL - __builtin_ctzll(morton) / DIM;
 }
 
-/* Lists of families, by the leaves of this rank. */
+/* Make lists of families, by the leaves of this rank. */
 static void list_families(struct linking *k) {
   struct hierarchy *h = k->h;
   const struct mesh *mesh = h->mesh;
@@ -59,7 +59,7 @@ static void gather_level(struct linking *k, int l) {
   level->nfamilies = total;
 }
 
-/* Small levels, from the coarsest on, become rank 0's. */
+/* Give small levels, from the coarsest on, to rank 0. */
 static void gather_levels(struct linking *k) {
   struct hierarchy *h = k->h;
   int64_t n[FOREST_MAX_LEVEL + 1] = {0};
@@ -91,8 +91,8 @@ static void number_slots(struct linking *k) {
   h->family_parent = MEM_NEW(int32_t, families);
 }
 
-/* Slot of the node at `key` of a level, by moving `cursor` up the sorted list
- * of families. */
+/* Return the slot of the node at `key` of a level, by moving `cursor` up the
+ * sorted list of families. */
 static int32_t find_next(const struct linking *k, int l, uint64_t key,
                          int32_t *cursor) {
   if (l == 0) return linking_find(k, 0, key);
@@ -156,8 +156,9 @@ static void divide_sides(struct hierarchy *h) {
   }
 }
 
-/* Patches of walls, from the leaves up; of several patches on the side of a
- * merged node one is taken. Travels in h->w, which is not needed yet. */
+/* Find the patches of walls, from the leaves up; of several patches on the side
+ * of a merged node one is taken. They travel in h->w, which is not needed yet.
+ */
 static void find_patches(struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -206,7 +207,8 @@ static void allocate_sides(struct hierarchy *h) {
   }
 }
 
-/* Values beyond the slots: virtual children, then images. */
+/* Return the number of values beyond the slots: virtual children, then images.
+ */
 static int64_t nvalues(const struct hierarchy *h) {
   return (int64_t)h->nslots + h->njumps + h->nmirrors;
 }

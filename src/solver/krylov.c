@@ -54,7 +54,7 @@ void krylov_space_destroy(struct krylov_space *space) {
   mem_free(space);
 }
 
-/* For vectors of `size` numbers. */
+/* Open a space for vectors of `size` numbers. */
 static void space_open(struct krylov_space *space, int64_t size) {
   space->used = 0;
   space->terms = 1;
@@ -127,7 +127,8 @@ static int64_t block_size(int64_t n, int64_t begin) {
   return n - begin < BLOCK ? n - begin : BLOCK;
 }
 
-/* As unsigned integers, absolute values are ordered and a NaN beats all. */
+/* Return |v| as an unsigned integer: these are ordered as the absolute values,
+ * and a NaN beats all. */
 static inline uint64_t ordered(double v) {
   uint64_t bits;
   v = fabs(v);
@@ -153,7 +154,7 @@ static uint64_t max_ratio(int32_t n, const double *density, const double *v) {
   return most;
 }
 
-/* max |r/rho|; NaN if any is. */
+/* Return max |r/rho|; NaN if any is. */
 static double max_residual(const struct krylov_system *s, const double *r) {
   uint64_t most = 0;
   for (int c = 0; c < s->nparts; c++) {
@@ -167,13 +168,13 @@ static double max_residual(const struct krylov_system *s, const double *r) {
   return value;
 }
 
-/* a += f b */
+/* Add f b to a. */
 static void add_to(int64_t n, double *restrict a, double f,
                    const float *restrict b) {
   for (int64_t i = 0; i < n; i++) a[i] += f * (double)b[i];
 }
 
-/* c_j = <v, q_j> / <q_j, q_j>, j of all directions so far. */
+/* Set c_j = <v, q_j> / <q_j, q_j>, j of all directions so far. */
 static void project(const struct krylov_system *s,
                     const struct krylov_space *space, double *const v[],
                     double *c) {
@@ -194,7 +195,7 @@ static void project(const struct krylov_system *s,
   for (int j = 0; j < space->used; j++) c[j] *= space->inverse[j];
 }
 
-/* v += sign sum_j c_j d_j, d the z or q of all directions so far. */
+/* Add sign sum_j c_j d_j to v, d the z or q of all directions so far. */
 static void add_all(const struct krylov_system *s,
                     const struct krylov_space *space, double *const v[],
                     double sign, const double *c,
@@ -220,7 +221,7 @@ static void orthogonalise(const struct krylov_system *s,
   add_all(s, space, v, -1, c, space->q);
 }
 
-/* q = v, rounded to its terms, and v likewise. */
+/* Set q = v, rounded to its terms, and v likewise. */
 static void round_to(int64_t n, int terms, double *v, float *const q[2],
                      int64_t at) {
   for (int64_t i = 0; i < n; i++) {
@@ -253,7 +254,7 @@ static void store(const struct krylov_system *s, struct krylov_space *space,
   space->inverse[space->used] = 1 / product[1];
 }
 
-/* Next direction, for r of size max |r/rho|: precondition, apply, make
+/* Make the next direction, for r of size max |r/rho|: precondition, apply, make
  * orthogonal to those before it. Leaves <r, q>, <q, q>, <r, r>. */
 static void make_direction(const struct krylov_system *s,
                            struct krylov_space *space, const double *r,
@@ -268,7 +269,7 @@ static void make_direction(const struct krylov_system *s,
   store(s, space, q, r, product);
 }
 
-/* y: along z what steps a are along directions made orthogonal. */
+/* Find y, the steps along z that a are along directions made orthogonal. */
 static void find_steps(const struct krylov_space *space, double *y) {
   memcpy(y, space->a, (size_t)space->used * sizeof *y);
   for (int k = space->used - 1; k > 0; k--) {
@@ -321,7 +322,8 @@ static bool must_renew(const struct krylov_space *space,
          (p->size <= p->lost || p->lost > KRYLOV_GROWTH * p->start);
 }
 
-/* r = b - A x; directions get longer numbers where floats do not do. */
+/* Compute r = b - A x anew; directions get longer numbers where floats do not
+ * do. */
 static void renew(const struct krylov_system *s, struct krylov_space *space,
                   struct progress *p, double *r, double *const x[]) {
   const bool poor =
@@ -333,9 +335,10 @@ static void renew(const struct krylov_system *s, struct krylov_space *space,
   *p = (struct progress){.size = size, .start = size};
 }
 
-/* r -= a q along the next direction. Where that is little gain, what rounding
- * has left of r along old directions may be in the way, which new ones,
- * orthogonal to them, cannot remove: r is made orthogonal to all again. */
+/* Subtract a q from r along the next direction. Where that is little gain, what
+ * rounding has left of r along old directions may be in the way, which new
+ * ones, orthogonal to them, cannot remove: r is made orthogonal to all again.
+ */
 static void step(const struct krylov_system *s, struct krylov_space *space,
                  struct progress *p, const double product[3], double *r) {
   const int k = space->used++;
@@ -356,7 +359,7 @@ static void step(const struct krylov_system *s, struct krylov_space *space,
   p->lost = p->forgotten + rounding(space);
 }
 
-/* One iteration; false if it leads nowhere. */
+/* Make one iteration; returns false if it leads nowhere. */
 static bool iterate(const struct krylov_system *s, struct krylov_space *space,
                     struct progress *p, double *r, double *const x[]) {
   double product[3];

@@ -131,20 +131,20 @@ struct hierarchy {
   struct krylov_space *krylov;
 };
 
-/* Slot of child c of family k of a level. */
+/* Return the slot of child c of family k of a level. */
 static inline int32_t family_slot(const struct level *level, int32_t k, int c) {
   const int black = __builtin_popcount((unsigned)c) & 1;
   return level->begin + (black * HALF + (c >> 1)) * level->nfamilies + k;
 }
-/* Child whose slots are number q of the NCHILD runs of a level: red ones
- * first, HALF of each. */
+/* Return the child whose slots are number q of the NCHILD runs of a level: red
+ * ones first, HALF of each. */
 static inline int run_child(int q) {
   const int j = q % HALF;
   return 2 * j + ((__builtin_popcount((unsigned)j) & 1) ^ q / HALF);
 }
 /* Number of the pair of axes a < b: 01, 02, 12. */
 static inline int pair_number(int a, int b) { return a + b - 1; }
-/* Entry of `corner` for the node one step along axes a != b. */
+/* Return the entry of `corner` for the node one step along axes a != b. */
 static inline int corner_entry(int a, int upper_a, int b, int upper_b) {
   return a < b ? 4 * pair_number(a, b) + upper_a + 2 * upper_b
                : 4 * pair_number(b, a) + upper_b + 2 * upper_a;
@@ -161,9 +161,9 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
 void sweep_relax(struct hierarchy *h, const struct level *level, int q);
 /* Relax n nodes one by one; node [n]. */
 void sweep_relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node);
-/* Runs whose nodes have a residual after a sweep. Those relaxed last have none:
- * black nodes of a single component; of a velocity the last child, but for what
- * its image beyond a wall has changed since. */
+/* Count the runs whose nodes have a residual after a sweep. Those relaxed last
+ * have none: black nodes of a single component; of a velocity the last child,
+ * but for what its image beyond a wall has changed since. */
 static inline int sweep_residual_runs(int nparts) {
   return nparts > 1 ? NCHILD - 1 : HALF;
 }
@@ -172,14 +172,14 @@ static inline int sweep_residual_runs(int nparts) {
 void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
                          int q, int32_t first, int32_t n,
                          double (*sum)[SWEEP_BLOCK]);
-/* e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times
+/* Find e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times
  * `factor`; e likewise, e[0] rounded and e[1] what that misses, if it is not
  * NULL. Collective. */
 void cycle_run(struct hierarchy *h, double factor, const double *r,
                float *const e[2]);
-/* Before each cycle: if the first one has raised the residual, the others
- * relax nodes near jumps of the coefficient more often (rough.c). Uses h->e.
- * Collective. */
+/* Watch the residual before each cycle: if the first one has raised it, the
+ * others relax nodes near jumps of the coefficient more often (rough.c). Uses
+ * h->e. Collective. */
 void rough_watch(struct hierarchy *h, double residual);
 /* Find the nodes of a skin (skin_nodes.c), NULL: none, after coefficients_set.
  */

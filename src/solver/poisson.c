@@ -23,7 +23,7 @@ void poisson_flux(const struct mesh *mesh, const double *alpha_f,
   mesh_fill_faces(mesh, 1, (double *const[]){flux});
 }
 
-/* q = div(alpha grad p) - mass p, p filled; q may be p. */
+/* Set q = div(alpha grad p) - mass p, p filled; q may be p. */
 static void operate(const struct context *k, const double *p, double *q) {
   const struct mesh *mesh = k->mesh;
   double *flux = k->h->work_faces;
@@ -75,8 +75,8 @@ static bool has_level(const struct mesh *mesh, const double *alpha_f,
   return mesh_max(mesh, found) > 0;
 }
 
-/* Means over the volume of p, of the residual r, and of the terms it is made
- * of, each in absolute value. */
+/* Find the means over the volume of p, of the residual r, and of the terms it
+ * is made of, each in absolute value. */
 static void means(const struct context *k, const double *p, const double *r,
                   double mean[3]) {
   const struct mesh *mesh = k->mesh;
