@@ -1,37 +1,38 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Krylov: flexible GCR, restarted, for systems too unsymmetric for CG.
  *
- * Solves A x = b from the right: for each iteration k
- *   z_k = M r, q_k = A z_k - sum_(j < k) h_jk q_j, h_jk = <A z_k, q_j> /
- *   <q_j, q_j>; a_k = <r, q_k> / <q_k, q_k>; r -= a_k q_k
- * and at the end, or when there are KRYLOV_DIRECTIONS,
- *   y_j = a_j - sum_(k > j) h_jk y_k, the last first; x += sum_k y_k z_k.
- * M may change from one call to the next [eisenstat_1983]. The inner product
- * is <a, b> = sum_i w_i^2 a_i b_i with weights w given by the caller; w_i =
- * 1 / A_ii measures a residual by the correction it asks for, without which
- * coefficients that differ by 1e4 or more stop the convergence (w_i^2 =
- * 1 / A_ii: 15 % fewer iterations in a collapse with eta_max = 1e4, but discs
- * of contrast 1e6 do not converge). The test is on max |r_i / rho_i|; a guess
- * must pass it a million times better to need no iteration, and one that passes
- * it, or nearly, is made a thousand times better: weights let max |r/rho| of a
- * light phase grow while <r, r> falls, and what one iteration leaves, always
- * below the tolerance, grew tenfold from step to step where density jumps by
- * 1e5 (mu(I) at rest, gas 1e6 times lighter: 4e-6 m/s, now 2e-10; a collapse
- * takes 522 pressure iterations in place of 521). Where an iteration
- * gains little, r is made orthogonal to all q_j again: what rounding leaves of
- * it there is out of reach of new directions.
+ * A x = b is solved with a preconditioner M from the right [eisenstat_1983].
+ * Iteration k makes a direction z_k, its image q_k, and a step along them:
+ *   z_k = M r
+ *   q_k = A z_k - sum_(j < k) h_jk q_j,   h_jk = <A z_k, q_j> / <q_j, q_j>
+ *   r  -= a_k q_k,                        a_k  = <r, q_k> / <q_k, q_k>
+ * After KRYLOV_DIRECTIONS iterations, and at the end, x follows r:
+ *   x += sum_k y_k z_k,   y_j = a_j - sum_(k > j) h_jk y_k, the last first.
+ * M may change from one iteration to the next.
  *
- * z and q are stored as floats, all else is double. z is rounded before A is
- * applied, so that it is exact; made orthogonal like q it would not be, and
- * where a stiff body moves, A times what rounding does to z is larger than r.
- * Rounding q makes r wrong by at most
+ * Inner product. <a, b> = sum_i w_i^2 a_i b_i, the weights w being given by the
+ * caller. w_i = 1 / A_ii measures a residual by the correction that it asks
+ * for; without it coefficients that differ by 1e4 or more stop the convergence.
+ *
+ * End. A solve ends where max |r_i / rho_i| is below the tolerance. Two rules
+ * keep errors of one sign from adding up over time steps: a guess needs no
+ * iteration only if it is a million times better than that, and a guess that is
+ * nearly good enough is made a thousand times better. Where one iteration gains
+ * little, r is made orthogonal to all q_j once more, as what rounding leaves of
+ * r along them is out of reach of new directions.
+ *
+ * Rounding. z and q are stored as floats, all else is double. z is rounded
+ * before A is applied, so that A z is exact; z is not made orthogonal as q is,
+ * because A times the rounding of z may be larger than r where a stiff body
+ * moves. The rounding of q makes r wrong by at most
  *   lost = 2^-24 sum_k |y_k| max |q_k / rho|,
- * which is added to max |r/rho| in the test. Where lost is more than half the
- * tolerance and r as small as lost, r = b - A x is computed again and the
- * iteration starts anew from there. Where that does not do, as r has grown at
- * first (stiff bodies) or is not reduced, numbers of directions become the sum
- * of two floats, 48 bits, for the rest of the solve. (With floats alone discs
- * of contrast 1e6 and more stall.)
+ * which the test adds to max |r / rho|. Where lost is more than half the
+ * tolerance and r no larger than lost, r = b - A x is computed again and the
+ * iteration starts anew. Where r has grown at first, as it does with stiff
+ * bodies, or is not reduced, numbers of directions become sums of two floats,
+ * 48 bits, for the rest of the solve.
+ *
+ * docs/notes/solver.md has the trials.
  */
 #ifndef TALUS_KRYLOV_H
 #define TALUS_KRYLOV_H
@@ -43,7 +44,7 @@
 
 enum { KRYLOV_DIRECTIONS = 32, KRYLOV_PATIENCE = 12, KRYLOV_PARTS = 3 };
 
-/* What GCR needs to know of a system of `nparts` arrays of `n` numbers each
+/* A system of `nparts` arrays of `n` numbers each, as GCR sees it
  * (parts are the components of a vector; they follow one another, so vectors
  * are [nparts * n], nparts <= KRYLOV_PARTS). */
 struct krylov_system {

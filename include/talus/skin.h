@@ -3,23 +3,24 @@
  * them.
  *
  * The derivative of u along axis t at a face of axis d is the mean over four
- * lines, from each of its two nodes to both neighbours along t. Beside the
- * surface some of them end in gas, whose velocity does not continue that of
- * the grains. With the viscosity of the grains, which the face has, such a line
- * makes a stress that neither phase has, over one cell, whatever its size: at
- * the ends of the surface it leaves a force of eta du / 4. So the lines have
- * weights: with m = c / (c + (1 - c) rho_gas/rho_grains), the part of a node's
- * mass that is grains, and so of its velocity,
- *   h du/dx_t = sum_k w_k du_k / sum_k w_k,   w_k = 1 - M (1 - m_k),
- * m_k at the far end of line k, M the smaller m of the nodes of the face. In
- * grains (M = 1) lines into gas (m_k = 0) do not count: exact for grains that
- * move linearly, whatever the gas does. In gas (M = 0) all count. Where less
- * than one whole line is left, in a film one cell thick, the shear stress is
- * that times sum_k w_k, at last 0. All of this is continuous in c.
+ * lines: from each of the two nodes of the face to both neighbours along t.
+ * Beside the surface some lines end in gas, whose velocity does not continue
+ * the velocity of the grains. The face has the viscosity of the grains, so such
+ * a line makes a stress that neither phase has: at the ends of the surface a
+ * force of eta du / 4 is left, however small the cells.
  *
- * A dense square that moves through gas 1e5 times lighter (dense_square of
- * tests/convergence) changes its shape by 1.7e-3 of its area, with lines into
- * the gas by 2.3e-2.
+ * Therefore the lines have weights. A node with the fraction c has the part
+ *   m = c / (c + (1 - c) rho_gas / rho_grains)
+ * of its mass, and so of its velocity, from the grains. With m_k at the far end
+ * of line k, and M the smaller m of the two nodes of the face,
+ *   h du/dx_t = sum_k w_k du_k / sum_k w_k,   w_k = 1 - M (1 - m_k).
+ * In grains (M = 1) lines into gas (m_k = 0) do not count: the derivative is
+ * exact for grains that move linearly, whatever the gas does. In gas (M = 0)
+ * all lines count. A film one cell thick has less than one whole line: its
+ * shear stress is reduced by the factor sum_k w_k, down to 0. All of this is
+ * continuous in c.
+ *
+ * The convergence case dense_square shows the effect (docs/notes/solver.md).
  */
 #ifndef TALUS_SKIN_H
 #define TALUS_SKIN_H

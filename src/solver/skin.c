@@ -6,7 +6,7 @@
 #include "talus/memory.h"
 #include "talus/minmax.h"
 
-/* Weights so close to 1 count as that. */
+/* A weight or a part m this close to 1 is whole, to 0 nothing. */
 #define WHOLE 1e-9
 
 struct skin *skin_new(void) {
@@ -66,7 +66,7 @@ static void add_face(struct skin *skin, const struct skin_face *face) {
   skin->face[skin->n++] = *face;
 }
 
-/* Does a leaf that holds grains see something else in its stencil? */
+/* Return whether leaf i holds grains and sees something else in its stencil. */
 static bool is_beside(const struct mesh *mesh, const double *c, double ratio,
                       int32_t i) {
   const int32_t *stencil = mesh->stencil[i];
