@@ -18,6 +18,9 @@ static void apply(const struct hierarchy *h, int c, const double *p,
       if (h->w[f][i] > 0) {
         sum -= twice * (double)h->w[f][i] * p[h->neighbour[f][i]];
       }
+      if (h->has_bulk && twice > 1) {
+        sum -= (double)h->bulk[f][i] * p[h->neighbour[f][i]];
+      }
     }
     q[i] = sum;
   }

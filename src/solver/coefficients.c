@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Coefficients of the two-point operator on all levels. */
+/* Coefficients of the two-point operator on all levels: set on leaves, then
+ * merged level by level from the finest one up. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -9,15 +10,14 @@
 #include "talus/memory.h"
 #include "talus/minmax.h"
 
-/* Beyond this factor what is inside is the edge of a body, not a gradient: to
- * reach into that would make the levels too stiff. 1000 does as well. */
+/* A conductance inside that is this much larger than that of the wall is the
+ * edge of a body, not a gradient: to reach into a body would make the levels
+ * too stiff. */
 #define WALL_JUMP 100
-/* Masses that differ by this factor jump. With sums everywhere poisson_solve
- * takes up to 14 iterations where they jump by 1e6 (12 in helmholtz of
- * tests/convergence), and one more with each level. */
+/* Masses in a family that differ by this factor jump. */
 #define MASS_JUMP 10
 
-/* Conductance of a wall over that between two cells. */
+/* Return the conductance of a wall over that between two cells. */
 static double wall_factor(const struct bc *bc, double h) {
   switch (bc->type) {
     case BC_DIRICHLET:
@@ -29,15 +29,15 @@ static double wall_factor(const struct bc *bc, double h) {
   }
 }
 
-/* Leaves: sides into w, mass [slots]. */
+/* Set the sides and the mass [nslots] of leaves. */
 static void set_leaves(struct hierarchy *h, const double *alpha_f,
                        double factor, const double *mass_density,
                        double *mass) {
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
-    const double ratio =
-        factor * mesh_volume(mesh, i) / (mesh->h[i] * mesh->h[i]);
+    const double width = mesh_width(mesh, i);
+    const double ratio = factor * mesh_volume(mesh, i) / (width * width);
     for (int f = 0; f < NFACE; f++) {
       h->w[f][s] = (float)(ratio * alpha_f[face[f]]);
     }
@@ -45,10 +45,11 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
   }
 }
 
-/* Walls of level l: conductance into wall[c] [slots]. Half a cell of the level
- * above reaches from the wall to the opposite side of the node: it gets both in
- * series where the wall conducts less, as it does below a heap that shears
- * there. Else every level would be too soft, and correct too much. */
+/* Add the conductances of the walls of level l to wall[c] [nslots]. Half a cell
+ * of the level above reaches from the wall to the opposite side of the node. So
+ * where the wall conducts less than that side, as it does below a heap that
+ * shears there, the level above gets both in series; the mean of the walls
+ * alone would make every level too soft and its corrections too large. */
 static void set_walls(struct hierarchy *h, int l, const struct bc *const bc[],
                       double *const wall[]) {
   const struct level *level = &h->level[l];
@@ -61,7 +62,9 @@ static void set_walls(struct hierarchy *h, int l, const struct bc *const bc[],
       const double w = (double)h->w[f][s], inside = (double)h->w[f ^ 1][s];
       for (int c = 0; c < h->nparts; c++) {
         const int twice = h->nparts > 1 && c == f >> 1 ? 2 : 1;
-        wall[c][s] += twice * w * wall_factor(&bc[c][patch], size);
+        const double bulk =
+            h->has_bulk && twice > 1 ? (double)h->bulk[f][s] : 0;
+        wall[c][s] += (twice * w + bulk) * wall_factor(&bc[c][patch], size);
       }
       if (inside > w && inside < WALL_JUMP * w) {
         h->w[f][s] = (float)(2 * w * inside / (w + inside));
@@ -70,9 +73,9 @@ static void set_walls(struct hierarchy *h, int l, const struct bc *const bc[],
   }
 }
 
-/* Level l to level l - 1: sides of children in parallel, over twice the
- * distance. Slopes inside a family from values outside are kept small where
- * what is inside is stiffer than the side between. */
+/* Merge the sides of level l: those of children in parallel, over twice the
+ * distance. The limit g of the prolongation (hierarchy.h) is set along with
+ * them. */
 static void merge_sides(struct hierarchy *h, int l) {
   const struct level *level = &h->level[l];
   const int32_t n = level->nfamilies;
@@ -95,9 +98,10 @@ static void merge_sides(struct hierarchy *h, int l) {
   }
 }
 
-/* Mass that node i gives to its parent. Beside one so heavy that its value is 0
- * the others see a wall, which their sum would put too near: so the mass of a
- * heavy node counts in series with its sides. */
+/* Return the mass that node i gives to its parent. A node so heavy that its
+ * value is 0 is a wall for its siblings, and the sum of masses would put that
+ * wall too near. So the mass of a heavy node counts in series with its sides.
+ */
 static double given_mass(const struct hierarchy *h, const double *mass,
                          int32_t i, double least) {
   double sides = 0;
@@ -106,7 +110,8 @@ static double given_mass(const struct hierarchy *h, const double *mass,
   return sides > 0 ? mass[i] * sides / (mass[i] + sides) : mass[i];
 }
 
-/* Masses add up; of a single component only as far as they do not jump. */
+/* Merge the masses of level l: they add up. For a single component a mass that
+ * jumps counts less. */
 static void merge_cells(struct hierarchy *h, int l, double *mass) {
   const struct level *level = &h->level[l];
   const int32_t *parent = h->family_parent + level->family_begin;
@@ -127,18 +132,30 @@ static void add_ghosts(struct hierarchy *h, int l, double *mass) {
   plan_run(&h->level[l].add, 1, &mass, 1, true);
 }
 
-/* Walls have no neighbour: they are in the diagonal. */
+/* Clear the sides without a neighbour, once walls are in the diagonal. */
 static void clear_sides(struct hierarchy *h) {
   for (int32_t k = 0; k < h->nsides; k++) {
     for (int f = 0; f < NFACE; f++) {
-      if (h->sides[k].patch[f] >= 0) h->w[f][h->sides[k].slot] = 0;
+      if (h->sides[k].patch[f] < 0) continue;
+      h->w[f][h->sides[k].slot] = 0;
+      if (h->has_bulk) h->bulk[f][h->sides[k].slot] = 0;
     }
   }
   /* A tree that is its own neighbour has no flux. */
   for (int32_t i = 0; i < h->level[0].nowned; i++) {
     for (int f = 0; f < NFACE; f++) {
-      if (h->neighbour[f][i] == i) h->w[f][i] = 0;
+      if (h->neighbour[f][i] != i) continue;
+      h->w[f][i] = 0;
+      if (h->has_bulk) h->bulk[f][i] = 0;
     }
+  }
+}
+
+/* Add the sides of lambda to the diagonal of component c. */
+static void add_bulk(const struct hierarchy *h, int c, double *diagonal) {
+  const float *lower = h->bulk[2 * c], *upper = h->bulk[2 * c + 1];
+  for (int32_t i = 0; i < h->nowned; i++) {
+    diagonal[i] += (double)lower[i] + (double)upper[i];
   }
 }
 
@@ -156,6 +173,7 @@ static void set_inverse(struct hierarchy *h, double *restrict mass,
     const double twice = h->nparts > 1 ? 1 : 0; /* the normal stress */
     const float *lower = h->w[2 * c], *upper = h->w[2 * c + 1];
     double *restrict inverse = h->inverse[c];
+    if (h->has_bulk) add_bulk(h, c, wall[c]);
     for (int32_t i = 0; i < h->nowned; i++) {
       const double diagonal =
           mass[i] + wall[c][i] + twice * ((double)lower[i] + (double)upper[i]);
@@ -168,7 +186,7 @@ static void set_inverse(struct hierarchy *h, double *restrict mass,
   }
 }
 
-/* Ghost values of corrections, for prolongation. */
+/* Set what a correction is beyond walls, for the prolongation. */
 static void set_beyond(struct hierarchy *h, const struct bc *const bc[]) {
   const double size = forest_layout(h->mesh->forest)->size;
   for (int l = 0; l < h->nlevels; l++) {

@@ -307,6 +307,7 @@ void hierarchy_destroy(struct hierarchy *h) {
   for (int f = 0; f < NFACE; f++) {
     mem_free(h->neighbour[f]);
     mem_free(h->w[f]);
+    mem_free(h->bulk[f]);
     mem_free(h->limit[f]);
   }
   for (int e = 0; e < NCORNER; e++) mem_free(h->corner[e]);

@@ -97,10 +97,12 @@ struct hierarchy {
   int32_t nmirrors;
   struct mirror *mirror;
   /* Operator: set by coefficients_set for each solve */
-  int nparts;           /* 1, or DIM: velocity */
-  bool has_mass;        /* somewhere, perhaps */
-  float *w[NFACE];      /* [nslots] alpha area / distance, 0 at a wall;
-                           the inverse is exactly that of what is rounded */
+  int nparts;      /* 1, or DIM: velocity */
+  bool has_mass;   /* somewhere, perhaps */
+  float *w[NFACE]; /* [nslots] alpha area / distance, 0 at a wall;
+                      the inverse is exactly that of what is rounded */
+  bool has_bulk;
+  float *bulk[NFACE]; /* [nslots] likewise with lambda (bulk.c); NULL: never */
   double *inverse[DIM]; /* [nslots] 1 / diagonal, 0 if it is 0 */
   double *e[DIM];       /* [nslots + njumps + nmirrors] correction */
   double *r[DIM];       /* [nslots] residual */
@@ -157,6 +159,14 @@ static inline int corner_entry(int a, int upper_a, int b, int upper_b) {
 void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
                       double factor, const double *mass,
                       const struct bc *const bc[]);
+/* Set the conductances of lambda, kappa_f NULL: none, before coefficients_set.
+ * Collective. */
+void bulk_set(struct hierarchy *h, const double *eta_f, const double *kappa_f,
+              double factor);
+/* Return what lambda adds to what pulls component c of node i. */
+double bulk_pull(const struct hierarchy *h, int32_t i, int c);
+/* Return what it adds to the flux out of node i through its face f. */
+double bulk_flux(const struct hierarchy *h, int32_t i, int f);
 /* Relax run q of a level (sweep.c), the nodes of one child number. */
 void sweep_relax(struct hierarchy *h, const struct level *level, int q);
 /* Relax n nodes one by one; node [n]. */

@@ -18,7 +18,7 @@ void poisson_flux(const struct mesh *mesh, const double *alpha_f,
                   const double *p, double *restrict flux) {
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int32_t *node = mesh->face_node[f];
-    flux[f] = alpha_f[f] * (p[node[1]] - p[node[0]]) / mesh->face_h[f];
+    flux[f] = mesh_slope(mesh, f, alpha_f[f] * (p[node[1]] - p[node[0]]));
   }
   mesh_fill_faces(mesh, 1, (double *const[]){flux});
 }
@@ -83,11 +83,10 @@ static void means(const struct context *k, const double *p, const double *r,
   const double *flux = k->h->work_faces; /* of p */
   double sum[4] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double size = 0;
-    for (int f = 0; f < NFACE; f++) size += fabs(flux[mesh->cell_face[i][f]]);
     sum[0] += mesh_volume(mesh, i) * p[i];
     sum[1] += mesh_volume(mesh, i) * r[i];
-    sum[2] += mesh_volume(mesh, i) * (fabs(k->rhs[i]) + size / mesh->h[i]);
+    sum[2] += mesh_volume(mesh, i) *
+              (fabs(k->rhs[i]) + 2 * mesh_turnover(mesh, flux, i));
     sum[3] += mesh_volume(mesh, i);
   }
   MPI_CHECK(
@@ -101,6 +100,7 @@ static void shift(const struct mesh *mesh, double a, double *v) {
 
 static void prepare(void *context) {
   const struct context *k = context;
+  bulk_set(k->h, NULL, NULL, 0);
   coefficients_set(k->h, 1, k->alpha_f, 1, k->mass, &k->bc);
 }
 

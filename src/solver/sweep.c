@@ -122,11 +122,22 @@ static void relax_velocity(struct hierarchy *h, const struct level *level,
   relax_run(h, level, q, DIM);
 }
 
+/* Add to e what lambda pulls node i to, once it is relaxed without. */
+static void add_bulk(struct hierarchy *h, int32_t i) {
+  double pull[DIM];
+  for (int c = 0; c < DIM; c++) pull[c] = bulk_pull(h, i, c);
+  for (int c = 0; c < DIM; c++) h->e[c][i] += h->inverse[c][i] * pull[c];
+}
+
 void sweep_relax(struct hierarchy *h, const struct level *level, int q) {
+  const int32_t begin = family_slot(level, 0, run_child(q));
   if (h->nparts > 1) {
     relax_velocity(h, level, q);
   } else {
     relax_scalar(h, level, q);
+  }
+  for (int32_t i = begin; i < begin + level->nfamilies && h->has_bulk; i++) {
+    add_bulk(h, i);
   }
 }
 
@@ -174,6 +185,10 @@ void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
   } else {
     residuals_scalar(h, level, q, first, n, sum);
   }
+  const int32_t begin = family_slot(level, 0, run_child(q)) + first;
+  for (int c = 0; c < h->nparts && h->has_bulk; c++) {
+    for (int32_t k = 0; k < n; k++) sum[c][k] += bulk_pull(h, begin + k, c);
+  }
 }
 
 KERNEL void relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node,
@@ -188,4 +203,5 @@ void sweep_relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node) {
   } else {
     relax_nodes(h, n, node, 1);
   }
+  for (int32_t k = 0; k < n && h->has_bulk; k++) add_bulk(h, node[k]);
 }

@@ -11,8 +11,8 @@
 struct context {
   const struct mesh *mesh;
   struct hierarchy *h;
-  const double *rho, *eta_f;
-  const struct skin *skin;
+  const double *rho;
+  const struct viscosity *viscosity;
   double theta_dt;
   double *const *rhs;
   const struct bc *const *bc;
@@ -24,7 +24,7 @@ static inline void face_stress(const struct mesh *mesh, const double *eta_f,
                                int32_t f, int d) {
   const int32_t *node = mesh->face_node[f];
   const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
-  const double eta = eta_f[f] / mesh->face_h[f];
+  const double eta = mesh_slope(mesh, f, eta_f[f]);
   const double *ud = u[d];
   const int low = node[0] == stencil[STENCIL_CENTRE]
                       ? STENCIL_CENTRE
@@ -50,7 +50,7 @@ static void skin_stress(const struct mesh *mesh, const double *eta_f,
   for (int32_t k = 0; k < skin->n; k++) {
     const struct skin_face *face = &skin->face[k];
     const int32_t f = face->face, *node = mesh->face_node[f];
-    const double eta = eta_f[f] / mesh->face_h[f];
+    const double eta = mesh_slope(mesh, f, eta_f[f]);
     for (int e = 0; e < DIM; e++) {
       if (e == face->axis) continue;
       const double du = u[e][node[1]] - u[e][node[0]];
@@ -60,42 +60,65 @@ static void skin_stress(const struct mesh *mesh, const double *eta_f,
   }
 }
 
-static void stress(const struct mesh *mesh, const double *eta_f,
-                   const struct skin *skin, double *const u[DIM],
-                   double *const tau[DIM]) {
+/* h div u at face f of axis d, as the stress sees it. */
+static double face_divergence(const struct mesh *mesh, double *const u[DIM],
+                              int d, int32_t f) {
+  const int32_t *node = mesh->face_node[f];
+  const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
+  const int low = node[0] == stencil[STENCIL_CENTRE]
+                      ? STENCIL_CENTRE
+                      : STENCIL_CENTRE - stencil_step(d);
+  const int32_t *at = stencil + low, over = stencil_step(d);
+  double sum = u[d][node[1]] - u[d][node[0]];
+  for (int e = 0; e < DIM; e++) {
+    const int32_t step = stencil_step(e);
+    if (e == d) continue;
+    sum += 0.25 * (u[e][at[step]] - u[e][at[-step]] + u[e][at[over + step]] -
+                   u[e][at[over - step]]);
+  }
+  return sum;
+}
+
+/* Add (kappa - 2 eta / 3) div u to the normal stress. */
+static void add_bulk(const struct mesh *mesh, const struct viscosity *viscosity,
+                     double *const u[DIM], double *const tau[DIM]) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const double lambda =
+          viscosity->kappa_f[f] - 2. / 3 * viscosity->eta_f[f];
+      tau[d][f] += mesh_slope(mesh, f, lambda * face_divergence(mesh, u, d, f));
+    }
+  }
+}
+
+static void stress(const struct mesh *mesh, const struct viscosity *viscosity,
+                   double *const u[DIM], double *const tau[DIM]) {
+  const double *eta_f = viscosity->eta_f;
+  const struct skin *skin = viscosity->skin;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       face_stress(mesh, eta_f, u, tau, f, d);
     }
   }
   if (skin) skin_stress(mesh, eta_f, skin, u, tau);
+  if (viscosity->kappa_f) add_bulk(mesh, viscosity, u, tau);
   mesh_fill_faces(mesh, DIM, tau);
 }
 
-/* Divergence of the stress at leaf i, times h. */
-static inline double divergence(const struct mesh *mesh, const double *tau,
-                                int32_t i) {
-  const int32_t *face = mesh->cell_face[i];
-  double sum = 0;
-  for (int d = 0; d < DIM; d++) sum += tau[face[2 * d + 1]] - tau[face[2 * d]];
-  return sum;
-}
-
-void viscous_force(const struct mesh *mesh, const double *eta_f,
-                   const struct skin *skin, double *const u[DIM],
-                   double *const force[DIM]) {
+void viscous_force(const struct mesh *mesh, const struct viscosity *viscosity,
+                   double *const u[DIM], double *const force[DIM]) {
   double *tau[DIM];
   for (int e = 0; e < DIM; e++) tau[e] = MEM_NEW(double, mesh->nfaces_all);
-  stress(mesh, eta_f, skin, u, tau);
+  stress(mesh, viscosity, u, tau);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      force[e][i] = divergence(mesh, tau[e], i) / mesh->h[i];
+      force[e][i] = mesh_divergence(mesh, tau[e], i);
     }
     mem_free(tau[e]);
   }
 }
 
-/* q = rho u - theta dt div(2 eta D(u)), u filled; q may be u. */
+/* q = rho u - theta dt div(stress), u filled; q may be u. */
 static void operate(const struct context *k, double *const u[DIM],
                     double *const q[DIM]) {
   const struct mesh *mesh = k->mesh;
@@ -103,11 +126,11 @@ static void operate(const struct context *k, double *const u[DIM],
   for (int e = 0; e < DIM; e++) {
     tau[e] = k->h->work_faces + (int64_t)e * mesh->nfaces_all;
   }
-  stress(mesh, k->eta_f, k->skin, u, tau);
+  stress(mesh, k->viscosity, u, tau);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double ratio = k->theta_dt / mesh->h[i];
+    const double ratio = k->theta_dt / mesh_width(mesh, i);
     for (int e = 0; e < DIM; e++) {
-      q[e][i] = k->rho[i] * u[e][i] - ratio * divergence(mesh, tau[e], i);
+      q[e][i] = k->rho[i] * u[e][i] - ratio * mesh_net(mesh, tau[e], i);
     }
   }
 }
@@ -144,19 +167,21 @@ static void precondition(void *context, const double *r, double size,
 
 static void prepare(void *context) {
   const struct context *k = context;
-  coefficients_set(k->h, DIM, k->eta_f, k->theta_dt, k->rho, k->bc);
-  skin_nodes_set(k->h, k->skin);
+  const struct viscosity *viscosity = k->viscosity;
+  bulk_set(k->h, viscosity->eta_f, viscosity->kappa_f, k->theta_dt);
+  coefficients_set(k->h, DIM, viscosity->eta_f, k->theta_dt, k->rho, k->bc);
+  skin_nodes_set(k->h, viscosity->skin);
 }
 
 struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
-                                 const double *rho, const double *eta_f,
-                                 const struct skin *skin, double theta_dt,
-                                 double *const rhs[DIM],
+                                 const double *rho,
+                                 const struct viscosity *viscosity,
+                                 double theta_dt, double *const rhs[DIM],
                                  const struct bc *const bc[DIM],
                                  double tolerance, int max_iterations,
                                  double *const u[DIM]) {
   CHECK(h->revision == mesh->revision, "hierarchy of an older mesh");
-  struct context context = {mesh, h, rho, eta_f, skin, theta_dt, rhs, bc};
+  struct context context = {mesh, h, rho, viscosity, theta_dt, rhs, bc};
   residual(&context, u, h->residual);
   const struct krylov_system system = {.comm = mesh->comm,
                                        .n = mesh->nleaves,

@@ -296,15 +296,20 @@ static void advect_momentum(struct two_phase *sim, double dt) {
   if (viscous) scratch_give(&sim->scratch, "predictor");
 }
 
+static struct viscosity viscosity_of(const struct two_phase *sim) {
+  return (struct viscosity){.eta_f = sim->eta_f->v, .skin = sim->skin};
+}
+
 /* Set the right hand side of the viscous equation. */
 static void viscous_rhs(struct two_phase *sim, double dt,
                         double *const rhs[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
   const double theta = sim->params->theta;
   if (theta < 1) {
+    const struct viscosity viscosity = viscosity_of(sim);
     double *u[DIM];
     field_arrays(sim->u_old, u);
-    viscous_force(mesh, sim->eta_f->v, sim->skin, u, rhs);
+    viscous_force(mesh, &viscosity, u, rhs);
   }
   for (int e = 0; e < DIM; e++) {
     const double *u = sim->u[e]->v, *g = sim->g[e]->v;
@@ -362,6 +367,7 @@ static const double *mass_with_walls(struct two_phase *sim, double dt) {
 static void diffuse_momentum(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct params *params = sim->params;
+  const struct viscosity viscosity = viscosity_of(sim);
   double *u[DIM], *rhs[DIM];
   const struct bc *bc[DIM];
   field_arrays(sim->u, u);
@@ -379,10 +385,9 @@ static void diffuse_momentum(struct two_phase *sim, double dt) {
     }
   }
   sim->scale = velocity_scale(sim, dt);
-  sim->viscous = viscous_solve(mesh, sim->grid.hierarchy, mass, sim->eta_f->v,
-                               sim->skin, params->theta * dt, rhs, bc,
-                               params->tolerance_viscous * sim->scale,
-                               params->max_iterations, u);
+  sim->viscous = viscous_solve(
+      mesh, sim->grid.hierarchy, mass, &viscosity, params->theta * dt, rhs, bc,
+      params->tolerance_viscous * sim->scale, params->max_iterations, u);
   for (int e = 0; e < DIM; e++) {
     double *viscous_g = sim->viscous_g[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {

@@ -122,9 +122,11 @@ static struct result time_viscous(int level, int calls) {
   const double begin = MPI_Wtime();
   for (int k = 0; k < calls; k++) {
     system_reset(&s);
-    result.iterations = viscous_solve(s.mesh, s.hierarchy, s.rho, s.coefficient,
-                                      NULL, 0.01, s.rhs, bc, 1e-4, 100, s.x)
-                            .iterations;
+    result.iterations =
+        viscous_solve(s.mesh, s.hierarchy, s.rho,
+                      &(struct viscosity){.eta_f = s.coefficient}, 0.01, s.rhs,
+                      bc, 1e-4, 100, s.x)
+            .iterations;
   }
   result.seconds = (MPI_Wtime() - begin) / calls;
   system_destroy(&s);

@@ -43,8 +43,8 @@ static int iterations(int base, int level, double contrast, double lambda) {
     most = larger(most, largest_size(mesh, rhs[d]));
   }
   const struct solve_stats stats = viscous_solve(
-      mesh, hierarchy, rho, eta_f, NULL, ldexp(1, -2 * level) / lambda, rhs, bc,
-      1e-8 * most, MOST, u);
+      mesh, hierarchy, rho, &(struct viscosity){.eta_f = eta_f},
+      ldexp(1, -2 * level) / lambda, rhs, bc, 1e-8 * most, MOST, u);
   for (int d = 0; d < DIM; d++) mem_free(u[d]), mem_free(rhs[d]);
   mem_free(eta_f), mem_free(rho);
   hierarchy_destroy(hierarchy);

@@ -156,8 +156,8 @@ static bool drive_stripes(struct bench *b, const double *c, const double *eta_f,
   }
   field_arrays(u, v);
   const struct solve_stats stats =
-      viscous_solve(mesh, hierarchy, rho, eta_f, NULL, dt, rhs, bc,
-                    1e-8 * largest_size(mesh, rhs[0]), MOST, v);
+      viscous_solve(mesh, hierarchy, rho, &(struct viscosity){.eta_f = eta_f},
+                    dt, rhs, bc, 1e-8 * largest_size(mesh, rhs[0]), MOST, v);
   for (int d = 0; d < DIM; d++) mem_free(rhs[d]);
   mem_free(rho);
   hierarchy_destroy(hierarchy);

@@ -80,8 +80,9 @@ static bool balance_forces(struct flow *s) {
     most = larger(most, largest_size(mesh, s->rhs[d]));
   }
   field_arrays(s->u, u);
-  return viscous_solve(mesh, s->hierarchy, s->rho, s->eta_f, NULL, dt, s->rhs,
-                       bc, kTolerance * most, MOST, u)
+  return viscous_solve(mesh, s->hierarchy, s->rho,
+                       &(struct viscosity){.eta_f = s->eta_f}, dt, s->rhs, bc,
+                       kTolerance * most, MOST, u)
              .status == SOLVE_CONVERGED;
 }
 

@@ -98,9 +98,9 @@ static struct norms solve(const void *context, enum grid_kind grid, int level) {
     bc[d] = s.side[d];
     scale = larger(scale, largest_size(s.mesh, s.rhs[d]));
   }
-  const struct solve_stats stats =
-      viscous_solve(s.mesh, s.hierarchy, s.rho, s.eta_f, NULL, kDt, s.rhs, bc,
-                    1e-8 * scale, MOST, s.u);
+  const struct solve_stats stats = viscous_solve(
+      s.mesh, s.hierarchy, s.rho, &(struct viscosity){.eta_f = s.eta_f}, kDt,
+      s.rhs, bc, 1e-8 * scale, MOST, s.u);
   struct norms norms = {0};
   for (int d = 0; d < DIM; d++) {
     double *error = s.rhs[d]; /* done with */

@@ -75,7 +75,8 @@ static void block_destroy(struct block *b) {
 /* Return the largest force of viscosity. */
 static double largest_force(struct block *b, const struct skin *skin) {
   double most = 0;
-  viscous_force(b->mesh, b->eta_f, skin, b->u, b->force);
+  const struct viscosity viscosity = {.eta_f = b->eta_f, .skin = skin};
+  viscous_force(b->mesh, &viscosity, b->u, b->force);
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < b->mesh->nleaves; i++) {
       most = larger(most, fabs(b->force[d][i]));
@@ -165,9 +166,10 @@ static int iterations(struct block *b, bool with_skin) {
     rho[i] = b->c[i] + (1 - b->c[i]) * 1e-3;
     for (int d = 0; d < DIM; d++) b->force[d][i] = rho[i] * b->u[d][i];
   }
+  const struct viscosity viscosity = {.eta_f = b->eta_f,
+                                      .skin = with_skin ? b->skin : NULL};
   const struct solve_stats stats = viscous_solve(
-      b->mesh, hierarchy, rho, b->eta_f, with_skin ? b->skin : NULL, 0.01,
-      b->force, bc, 1e-5, 50, b->u);
+      b->mesh, hierarchy, rho, &viscosity, 0.01, b->force, bc, 1e-5, 50, b->u);
   ck_assert_int_eq(stats.status, SOLVE_CONVERGED);
   mem_free(rho);
   hierarchy_destroy(hierarchy);

@@ -74,7 +74,7 @@ static void set_linear(struct flow *s, double a[DIM][DIM]) {
 static double inner_force(struct flow *s) {
   const struct mesh *mesh = s->mesh;
   double most = 0;
-  viscous_force(mesh, s->eta_f, NULL, s->u, s->rhs);
+  viscous_force(mesh, &(struct viscosity){.eta_f = s->eta_f}, s->u, s->rhs);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     bool inside = true;
     for (int d = 0; d < DIM; d++) {
@@ -128,7 +128,7 @@ START_TEST(momentum_balances) {
       flow_new(grid_new(MPI_COMM_WORLD, 2, true, 1, 4), rough, BC_NEUMANN);
   double sum[DIM] = {0}, size = 0;
   set_noise(s);
-  viscous_force(s->mesh, s->eta_f, NULL, s->u, s->rhs);
+  viscous_force(s->mesh, &(struct viscosity){.eta_f = s->eta_f}, s->u, s->rhs);
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
       sum[d] += mesh_volume(s->mesh, i) * s->rhs[d][i];
@@ -148,7 +148,7 @@ START_TEST(force_takes_energy_from_any_velocity) {
       flow_new(grid_new(MPI_COMM_WORLD, 2, _i, 3, 3), rough, BC_DIRICHLET);
   double work = 0;
   set_noise(s);
-  viscous_force(s->mesh, s->eta_f, NULL, s->u, s->rhs);
+  viscous_force(s->mesh, &(struct viscosity){.eta_f = s->eta_f}, s->u, s->rhs);
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
       work += mesh_volume(s->mesh, i) * s->u[d][i] * s->rhs[d][i];
@@ -174,7 +174,7 @@ START_TEST(force_on_waves_is_exact) {
     s->u[0][i] = sin(2 * kPi * s->mesh->x[i][_i]);
   }
   mesh_fill(s->mesh, DIM, s->u, s->bc, false);
-  viscous_force(s->mesh, s->eta_f, NULL, s->u, s->rhs);
+  viscous_force(s->mesh, &(struct viscosity){.eta_f = s->eta_f}, s->u, s->rhs);
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
       most = larger(most, fabs(s->rhs[d][i] + eigenvalue * s->u[d][i]));
@@ -187,9 +187,10 @@ START_TEST(force_on_waves_is_exact) {
 END_TEST
 
 /* Return eta of the test with periodic waves u_d = sin(theta + d), theta = 2 pi
- * sum x, in a fluid of eta = exp(2 cos(2 pi x_0)). */
+ * sum x, in a fluid of eta = exp(steepness cos(2 pi x_0)). */
+static double steepness;
 static double smooth_eta(const double *x) {
-  return exp(2 * cos(2 * kPi * x[0]));
+  return exp(steepness * cos(2 * kPi * x[0]));
 }
 static double wave(const double *x, int d) {
   double theta = d;
@@ -198,7 +199,7 @@ static double wave(const double *x, int d) {
 }
 static double wave_force(const double *x, int d) {
   const double k = 2 * kPi, eta = smooth_eta(x);
-  const double slope = -2 * k * sin(k * x[0]) * eta;
+  const double slope = -steepness * k * sin(k * x[0]) * eta;
   double force = 0;
   for (int e = 0; e < DIM; e++) {
     const double y[] = {x[0] + 0.25, x[1], DIM > 2 ? x[DIM - 1] : 0};
@@ -208,19 +209,39 @@ static double wave_force(const double *x, int d) {
   return force;
 }
 
-static double wave_error(int base, int level, bool *converged) {
+/* Return the bulk viscosity of that test, and what it adds to the force. */
+static double smooth_kappa(const double *x) {
+  return 3 + 2 * sin(2 * kPi * x[1]);
+}
+static double bulk_force(const double *x, int d) {
+  const double k = 2 * kPi, y[] = {x[0] + 0.25, x[1], DIM > 2 ? x[DIM - 1] : 0};
+  const double eta = smooth_eta(x), lambda = smooth_kappa(x) - 2. / 3 * eta;
+  double slope = 0, force = 0; /* of lambda along d */
+  if (d == 0) slope = 2. / 3 * steepness * k * sin(k * x[0]) * eta;
+  if (d == 1) slope = 2 * k * cos(k * x[1]);
+  for (int e = 0; e < DIM; e++) {
+    force += k * slope * wave(y, e) - k * k * lambda * wave(x, e);
+  }
+  return force;
+}
+
+static double wave_error(int base, int level, bool bulk, bool *converged) {
   struct flow *s = flow_new(grid_new(MPI_COMM_WORLD, 1, true, base, level),
                             smooth_eta, BC_NEUMANN);
-  double error = 0;
+  double error = 0, *kappa_f = face_field(s->mesh, smooth_kappa, false);
+  const struct viscosity viscosity = {.eta_f = s->eta_f,
+                                      .kappa_f = bulk ? kappa_f : NULL};
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     const double *x = s->mesh->x[i];
     for (int d = 0; d < DIM; d++) {
-      s->rhs[d][i] = wave(x, d) - wave_force(x, d);
+      const double force = wave_force(x, d) + (bulk ? bulk_force(x, d) : 0);
+      s->rhs[d][i] = wave(x, d) - force;
     }
   }
   const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 1, s->rhs,
-                    s->bc, 1e-8, MOST, s->u);
+      viscous_solve(s->mesh, s->hierarchy, s->rho, &viscosity, 1, s->rhs, s->bc,
+                    1e-8, MOST, s->u);
+  mem_free(kappa_f);
   *converged = *converged && stats.status == SOLVE_CONVERGED;
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
@@ -233,13 +254,54 @@ static double wave_error(int base, int level, bool *converged) {
   return error;
 }
 
+/* Uniform and adapted, without bulk viscosity and with it. */
 START_TEST(manufactured_solution_is_second_order) {
-  const int base = DIM == 2 ? 5 : 4;
+  const int base = DIM == 2 ? 5 : 4, adapted = _i % 2;
+  const bool bulk = _i / 2 > 0;
+  steepness = bulk ? 1 : 2;
   bool converged = true;
-  const double coarse = wave_error(base, base + _i, &converged);
-  const double fine = wave_error(base + 1, base + 1 + _i, &converged);
+  const double coarse = wave_error(base, base + adapted, bulk, &converged);
+  const double fine =
+      wave_error(base + 1, base + 1 + adapted, bulk, &converged);
   ck_assert(converged);
   ck_assert_double_ge(log2(coarse / fine), 1.9);
+}
+END_TEST
+
+static double bulk; /* viscosity of the disc below, 0 around it */
+static double bulk_of_disc(const double *x) {
+  return from_middle(x) < 0.25 ? bulk : 0;
+}
+
+/* Return the iterations from zero to 1e-8 of the first residual. */
+static int bulk_iterations(int level) {
+  struct flow *s = flow_new(grid_new(MPI_COMM_WORLD, 1, false, level, level),
+                            one, BC_DIRICHLET);
+  double *kappa_f = face_field(s->mesh, bulk_of_disc, false);
+  const struct viscosity viscosity = {.eta_f = s->eta_f, .kappa_f = kappa_f};
+  for (int32_t i = 0; i < s->mesh->nleaves; i++) {
+    const double *x = s->mesh->x[i];
+    for (int d = 0; d < DIM; d++) {
+      s->rhs[d][i] = sin(3 * x[d] + 1) * cos(5 * x[(d + 1) % DIM]);
+    }
+  }
+  const struct solve_stats stats =
+      viscous_solve(s->mesh, s->hierarchy, s->rho, &viscosity, 1, s->rhs, s->bc,
+                    1e-8, MOST, s->u);
+  mem_free(kappa_f);
+  flow_destroy(s);
+  return stats.status == SOLVE_CONVERGED ? stats.iterations : MOST;
+}
+
+/* Times eta; 0 makes lambda negative. */
+START_TEST(bulk_viscosity_of_a_disc) {
+  static const double bulks[] = {0, 1, 10, 100};
+  static const int most[] = {8, 10, 17, 48};
+  const int level = DIM == 2 ? 5 : 3;
+  bulk = bulks[_i];
+  for (int l = level; l <= level + 2; l++) {
+    ck_assert_int_le(bulk_iterations(l), most[_i]);
+  }
 }
 END_TEST
 
@@ -260,9 +322,9 @@ static int disc_iterations(int base, int level, double lambda) {
       s->rhs[d][i] = sin(3 * x[d] + 1) * cos(5 * x[(d + 1) % DIM]);
     }
   }
-  const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, dt, s->rhs,
-                    s->bc, 1e-8, MOST, s->u);
+  const struct solve_stats stats = viscous_solve(
+      s->mesh, s->hierarchy, s->rho, &(struct viscosity){.eta_f = s->eta_f}, dt,
+      s->rhs, s->bc, 1e-8, MOST, s->u);
   flow_destroy(s);
   return stats.status == SOLVE_CONVERGED ? stats.iterations : MOST;
 }
@@ -284,7 +346,7 @@ END_TEST
 static double true_residual(struct flow *s) {
   double *force[DIM], most = 0;
   for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, s->mesh->nleaves);
-  viscous_force(s->mesh, s->eta_f, NULL, s->u, force);
+  viscous_force(s->mesh, &(struct viscosity){.eta_f = s->eta_f}, s->u, force);
   for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < s->mesh->nleaves; i++) {
       most = larger(most, fabs(s->rhs[d][i] - s->u[d][i] + force[d][i]));
@@ -304,9 +366,9 @@ START_TEST(residual_is_what_it_is_said_to_be) {
     for (int d = 0; d < DIM; d++) s->rhs[d][i] = sin(5 * s->mesh->x[i][d] + 1);
   }
   const double tolerance = digits[_i % 3];
-  const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 1, s->rhs,
-                    s->bc, tolerance, MOST, s->u);
+  const struct solve_stats stats = viscous_solve(
+      s->mesh, s->hierarchy, s->rho, &(struct viscosity){.eta_f = s->eta_f}, 1,
+      s->rhs, s->bc, tolerance, MOST, s->u);
   const double residual = true_residual(s);
   ck_assert_int_eq(stats.status, SOLVE_CONVERGED);
   ck_assert_double_le(residual, tolerance);
@@ -323,9 +385,9 @@ static int floor_iterations(double (*eta)(const double *x)) {
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     s->rhs[1][i] = sin(7 * s->mesh->x[i][0]) * cos(5 * s->mesh->x[i][1]);
   }
-  const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 1e4, s->rhs,
-                    s->bc, 1e-8, MOST, s->u);
+  const struct solve_stats stats = viscous_solve(
+      s->mesh, s->hierarchy, s->rho, &(struct viscosity){.eta_f = s->eta_f},
+      1e4, s->rhs, s->bc, 1e-8, MOST, s->u);
   flow_destroy(s);
   return stats.status == SOLVE_CONVERGED ? stats.iterations : MOST;
 }
@@ -350,9 +412,9 @@ START_TEST(solution_does_not_depend_on_ranks) {
     for (int32_t i = 0; i < s->mesh->nleaves; i++) {
       for (int d = 0; d < DIM; d++) s->rhs[d][i] = sin(5 * s->mesh->x[i][d]);
     }
-    const struct solve_stats stats =
-        viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 0.01,
-                      s->rhs, s->bc, 1e-10, MOST, s->u);
+    const struct solve_stats stats = viscous_solve(
+        s->mesh, s->hierarchy, s->rho, &(struct viscosity){.eta_f = s->eta_f},
+        0.01, s->rhs, s->bc, 1e-10, MOST, s->u);
     double local = 0;
     for (int32_t i = 0; i < s->mesh->nleaves; i++) {
       local += mesh_volume(s->mesh, i) * (s->u[0][i] + 2 * s->u[1][i]);
@@ -379,9 +441,9 @@ START_TEST(robin_walls_slip) {
   along[2] = (struct bc){BC_ROBIN, 0, 0.3};
   along[3] = (struct bc){BC_DIRICHLET, 1, 0};
   s->bc[0] = along;
-  const struct solve_stats stats =
-      viscous_solve(s->mesh, s->hierarchy, s->rho, s->eta_f, NULL, 1e8, s->rhs,
-                    s->bc, 1e-4, MOST, s->u);
+  const struct solve_stats stats = viscous_solve(
+      s->mesh, s->hierarchy, s->rho, &(struct viscosity){.eta_f = s->eta_f},
+      1e8, s->rhs, s->bc, 1e-4, MOST, s->u);
   double error = 0;
   for (int32_t i = 0; i < s->mesh->nleaves; i++) {
     const double exact = (s->mesh->x[i][1] + 0.3) / 1.3;
@@ -404,7 +466,8 @@ Suite *viscous_suite(void) {
   tcase_add_test(t, momentum_balances);
   tcase_add_loop_test(t, force_takes_energy_from_any_velocity, 0, 2);
   tcase_add_loop_test(t, force_on_waves_is_exact, 0, DIM);
-  tcase_add_loop_test(t, manufactured_solution_is_second_order, 0, 2);
+  tcase_add_loop_test(t, manufactured_solution_is_second_order, 0, 4);
+  tcase_add_loop_test(t, bulk_viscosity_of_a_disc, 0, 4);
   tcase_add_loop_test(t, contrast_of_viscosity, 0, 10);
   tcase_add_loop_test(t, residual_is_what_it_is_said_to_be, 0, 6);
   tcase_add_test(t, soft_wall_costs_no_iterations);

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The stress lambda (div u) I in the cycle, lambda = kappa - 2 eta / 3.
+ *
+ * On a face of axis c it adds to the normal stress
+ *   lambda (u_c1 - u_c0) / h + lambda sum_(d != c) du_d/dx_d,
+ * du_d/dx_d being the mean over both nodes as in viscous.h. Conductances l are
+ * to lambda what w are to eta, merged in the same way; the first part is in the
+ * diagonal, and no node couples to itself by the second. So what these stresses
+ * add is found apart from the loops of sweep.c, which need no other copy. */
+#include <string.h>
+
+#include "levels.h"
+#include "talus/memory.h"
+
+/* Set those of leaves. */
+static void set_leaves(struct hierarchy *h, const double *eta_f,
+                       const double *kappa_f, double factor) {
+  const struct mesh *mesh = h->mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
+    const double width = mesh_width(mesh, i);
+    const double ratio = factor * mesh_volume(mesh, i) / (width * width);
+    for (int f = 0; f < NFACE; f++) {
+      const double lambda = kappa_f[face[f]] - 2. / 3 * eta_f[face[f]];
+      h->bulk[f][s] = (float)(ratio * lambda);
+    }
+  }
+}
+
+/* Merge level l to level l - 1: sides of children in parallel. */
+static void merge_sides(struct hierarchy *h, int l) {
+  const struct level *level = &h->level[l];
+  const int32_t *parent = h->family_parent + level->family_begin;
+  for (int f = 0; f < NFACE; f++) {
+    for (int32_t k = 0; k < level->nfamilies; k++) {
+      double out = 0;
+      for (int c = 0; c < NCHILD; c++) {
+        if ((c >> (f >> 1) & 1) != (f & 1)) continue;
+        out += 0.5 * (double)h->bulk[f][family_slot(level, k, c)];
+      }
+      h->bulk[f][parent[k]] = (float)out;
+    }
+  }
+}
+
+void bulk_set(struct hierarchy *h, const double *eta_f, const double *kappa_f,
+              double factor) {
+  const size_t n = (size_t)h->nslots;
+  h->has_bulk = kappa_f != NULL;
+  if (!h->has_bulk) return;
+  for (int f = 0; f < NFACE; f++) {
+    if (!h->bulk[f]) h->bulk[f] = MEM_NEW(float, n);
+    memset(h->bulk[f], 0, n * sizeof *h->bulk[f]);
+  }
+  set_leaves(h, eta_f, kappa_f, factor);
+  for (int l = h->nlevels - 1; l >= 0; l--) {
+    plan_run_float(&h->level[l].add, NFACE, h->bulk, true);
+    merge_sides(h, l);
+  }
+}
+
+/* 4 h times the sum of du_d/dx_d, d != c, on side f of node i; f is of axis c.
+ */
+static double divergence_along(const struct hierarchy *h, int32_t i, int f) {
+  const int c = f >> 1, upper = f & 1;
+  double sum = 0;
+  for (int d = 0; d < DIM; d++) {
+    const double *v = h->e[d];
+    if (d == c) continue;
+    sum += v[h->neighbour[2 * d + 1][i]] - v[h->neighbour[2 * d][i]] +
+           v[h->corner[corner_entry(c, upper, d, 1)][i]] -
+           v[h->corner[corner_entry(c, upper, d, 0)][i]];
+  }
+  return sum;
+}
+
+double bulk_pull(const struct hierarchy *h, int32_t i, int c) {
+  double sum = 0;
+  for (int f = 2 * c; f <= 2 * c + 1; f++) {
+    const double lambda = (double)h->bulk[f][i];
+    sum += lambda * (h->e[c][h->neighbour[f][i]] +
+                     (f & 1 ? 0.25 : -0.25) * divergence_along(h, i, f));
+  }
+  return sum;
+}
+
+double bulk_flux(const struct hierarchy *h, int32_t i, int f) {
+  const double *e = h->e[f >> 1];
+  return (double)h->bulk[f][i] *
+         (e[i] - e[h->neighbour[f][i]] -
+          (f & 1 ? 0.25 : -0.25) * divergence_along(h, i, f));
+}
