@@ -35,11 +35,13 @@ static int select_on_top(void *context, const double t[2]) {
   return select_patch(context, TOP, x);
 }
 
-/* Describe a box of gas with an opening of one type in a top of another. */
-static struct params opening_params(struct opening *opening,
-                                    enum boundary_type first,
-                                    enum boundary_type second) {
+/* Describe a box of gas with an opening of one type in a top of another; it
+ * begins at x = left. */
+static struct params opening_at(double left, struct opening *opening,
+                                enum boundary_type first,
+                                enum boundary_type second) {
   struct params p = box_params(FINE);
+  p.origin[0] = left;
   p.nboundaries = 8;
   p.boundary[FIRST].type = first;
   p.boundary[SECOND].type = second;
@@ -49,6 +51,7 @@ static struct params opening_params(struct opening *opening,
   p.boundary_context = opening;
   const struct side_map_layout layout = {.naxes = DIM - 1,
                                          .size = 1,
+                                         .origin = {left, 0},
                                          .trees = {1, 1},
                                          .level = FINE,
                                          .select = select_on_top,
@@ -57,6 +60,12 @@ static struct params opening_params(struct opening *opening,
   p.opening_level = FINE;
   p.cfl = 0.7;
   return p;
+}
+
+static struct params opening_params(struct opening *opening,
+                                    enum boundary_type first,
+                                    enum boundary_type second) {
+  return opening_at(0, opening, first, second);
 }
 
 static double nowhere(void *context, const double x[3]) {
@@ -228,6 +237,55 @@ START_TEST(large_opening_is_fine_at_its_ends) {
 }
 END_TEST
 
+/* A small outlet is fine in its middle too, far from both ends. */
+START_TEST(small_outlet_is_fine_all_over) {
+  struct opening opening = {0.25, 0.7, NULL};
+  struct params params =
+      opening_params(&opening, BOUNDARY_OUTFLOW, BOUNDARY_SLIP);
+  follow(&params);
+  struct two_phase *sim = sim_start(&params);
+  const struct mesh *mesh = sim->grid.mesh;
+  double coarsest = 0;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int patch = mesh->face_patch[f];
+    if (patch < FIRST || !sim->grid.open[patch]) continue;
+    coarsest = larger(coarsest, mesh->face_h[f]);
+  }
+  coarsest = mesh_max(mesh, coarsest);
+  two_phase_destroy(sim);
+  side_map_destroy(opening.map);
+  ck_assert(coarsest == 1.0 / (1 << FINE));
+}
+END_TEST
+
+/* A box and its opening, moved along x by what is no number of leaves. */
+START_TEST(levels_at_openings_move_with_the_box) {
+  const double left = 0.3;
+  struct opening opening[] = {{0.25, 0.7, NULL}, {0.55, 1, NULL}};
+  const struct params params[] = {
+      opening_at(0, &opening[0], BOUNDARY_OUTFLOW, BOUNDARY_SLIP),
+      opening_at(left, &opening[1], BOUNDARY_OUTFLOW, BOUNDARY_SLIP)};
+  int wrong = 0, fine = 0;
+  for (int level = COARSE; level <= FINE; level++) {
+    const double h = 1.0 / (1 << level);
+    for (int i = 0; i < 1 << level; i++) {
+      double at[2][3] = {{0}}; /* below the top, in 3D in the opening */
+      for (int k = 0; k < 2; k++) {
+        at[k][1] = (floor(0.4 / h) + 0.5) * h;
+        at[k][0] = k * left + (i + 0.5) * h;
+        at[k][DIM - 1] = 1 - 0.5 * h;
+      }
+      const int wanted = openings_level_at(&params[0], at[0], level);
+      wrong += openings_level_at(&params[1], at[1], level) != wanted;
+      fine += wanted == FINE;
+    }
+  }
+  for (int k = 0; k < 2; k++) side_map_destroy(opening[k].map);
+  ck_assert_int_gt(fine, 0);
+  ck_assert_int_eq(wrong, 0);
+}
+END_TEST
+
 Suite *openings_suite(void) {
   Suite *suite = suite_create("openings");
   TCase *tc = tcase_create("openings");
@@ -236,6 +294,8 @@ Suite *openings_suite(void) {
   tcase_add_test(tc, two_inflows_share_a_face);
   tcase_add_test(tc, narrow_outlet_is_on_the_finest_level);
   tcase_add_test(tc, large_opening_is_fine_at_its_ends);
+  tcase_add_test(tc, small_outlet_is_fine_all_over);
+  tcase_add_test(tc, levels_at_openings_move_with_the_box);
   tcase_set_timeout(tc, 60);
   suite_add_tcase(suite, tc);
   return suite;

@@ -52,11 +52,14 @@ static int choose_patch(void *context, int side, const double x[3]) {
   return 6;
 }
 
-/* One patch on all sides, on which grains slip: across it the velocity is
- * given, along it the stress. */
+/* One patch on all sides, on which grains slip instead of being held: across it
+ * the velocity is given, along it the stress. */
 START_TEST(patches_know_the_axis_they_lie_across) {
   struct params params = box_params(2);
   params.nboundaries = 7;
+  for (int side = 0; side < 6; side++) {
+    params.boundary[side].type = BOUNDARY_NO_SLIP;
+  }
   params.boundary[6].type = BOUNDARY_SLIP;
   params.boundary_select = choose_patch;
   struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
