@@ -311,6 +311,46 @@ START_TEST(who_reads_nodes_not_filled_gets_no_number) {
 }
 END_TEST
 
+/* Count the places that are asked for, and those not on their side. */
+struct asked {
+  const struct forest_layout *layout;
+  int n, wrong;
+};
+static int ask(void *context, int side, const double x[3], double h,
+               struct patch_shares *shares) {
+  struct asked *asked = (struct asked *)context;
+  const struct forest_layout *layout = asked->layout;
+  (void)shares;
+  asked->n++;
+  for (int d = 0; d < DIM; d++) {
+    const double low = layout->origin[d];
+    const double high = low + layout->size * layout->trees[d];
+    const double wall = side & 1 ? high : low;
+    const bool inside = x[d] > low + 0.49 * h && x[d] < high - 0.49 * h;
+    asked->wrong += d == side / 2 ? fabs(x[d] - wall) > 1e-12 : !inside;
+  }
+  return side;
+}
+
+START_TEST(patches_are_asked_for_on_their_side) {
+  struct forest_layout layout = {.size = 0.5, .patch = ask};
+  struct asked asked = {.layout = &layout};
+  layout.patch_context = &asked;
+  for (int d = 0; d < DIM; d++) {
+    layout.origin[d] = d - 1.2;
+    layout.trees[d] = 3 - d;
+  }
+  struct forest *forest = forest_new(MPI_COMM_WORLD, &layout, 2);
+  struct mesh *mesh = mesh_new(forest);
+  const double n = mesh_sum(mesh, asked.n);
+  const double wrong = mesh_sum(mesh, asked.wrong);
+  mesh_destroy(mesh);
+  forest_destroy(forest);
+  ck_assert_double_gt(n, 0);
+  ck_assert_double_eq(wrong, 0);
+}
+END_TEST
+
 Suite *mesh_suite(void);
 Suite *mesh_suite(void) {
   Suite *suite = suite_create("mesh");
@@ -327,6 +367,7 @@ Suite *mesh_suite(void) {
   tcase_add_loop_test(tc, nodes_are_poison_from_a_write_to_the_next_fill, 0, n);
   tcase_add_loop_test(tc, who_reads_nodes_not_filled_gets_no_number, 0, n);
   tcase_set_timeout(tc, 60);
+  tcase_add_test(tc, patches_are_asked_for_on_their_side);
   suite_add_tcase(suite, tc);
   return suite;
 }

@@ -47,6 +47,30 @@ START_TEST(walls_slip_by_their_length) {
 }
 END_TEST
 
+START_TEST(the_grid_begins_at_the_origin) {
+  const double origin[] = {1.5, -2.25, 4};
+  struct params params = box_params(2);
+  double low[DIM], off = 0;
+  for (int d = 0; d < DIM; d++) {
+    params.origin[d] = origin[d];
+    params.trees[d] = 1 + d;
+    low[d] = INFINITY;
+  }
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int d = 0; d < DIM; d++) {
+      low[d] = smaller(low[d], mesh->x[i][d] - 0.5 * mesh->h[i]);
+    }
+  }
+  for (int d = 0; d < DIM; d++) {
+    off = larger(off, fabs(-mesh_max(mesh, -low[d]) - origin[d]));
+  }
+  two_phase_destroy(sim);
+  ck_assert_double_le(off, 1e-14);
+}
+END_TEST
+
 static int choose_patch(void *context, int side, const double x[3]) {
   (void)context, (void)side, (void)x;
   return 6;
@@ -87,6 +111,7 @@ Suite *state_suite(void) {
   Suite *suite = suite_create("state");
   TCase *tc = tcase_create("boundaries");
   tcase_add_test(tc, walls_slip_by_their_length);
+  tcase_add_test(tc, the_grid_begins_at_the_origin);
   tcase_add_test(tc, patches_know_the_axis_they_lie_across);
   suite_add_tcase(suite, tc);
   return suite;
