@@ -110,14 +110,24 @@ static double given_mass(const struct hierarchy *h, const double *mass,
   return sides > 0 ? mass[i] * sides / (mass[i] + sides) : mass[i];
 }
 
-/* Merge the masses of level l: they add up. For a single component a mass that
- * jumps counts less. */
-static void merge_cells(struct hierarchy *h, int l, double *mass) {
+/* Merge the masses of level l: they add up. */
+static void merge_masses(struct hierarchy *h, int l, double *mass) {
+  const struct level *level = &h->level[l];
+  const int32_t *parent = h->family_parent + level->family_begin;
+  for (int32_t k = 0; k < level->nfamilies; k++) {
+    double sum = 0;
+    for (int c = 0; c < NCHILD; c++) sum += mass[family_slot(level, k, c)];
+    mass[parent[k]] = sum;
+  }
+}
+
+/* Merge them for a single component: a mass that jumps counts less. */
+static void merge_jumping_masses(struct hierarchy *h, int l, double *mass) {
   const struct level *level = &h->level[l];
   const int32_t *parent = h->family_parent + level->family_begin;
   for (int32_t k = 0; k < level->nfamilies; k++) {
     double sum = 0, least = HUGE_VAL;
-    for (int c = 0; c < NCHILD && h->nparts == 1; c++) {
+    for (int c = 0; c < NCHILD; c++) {
       least = min2(least, mass[family_slot(level, k, c)]);
     }
     for (int c = 0; c < NCHILD; c++) {
@@ -229,7 +239,11 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
     add_ghosts(h, l, mass);
     set_walls(h, l, bc, wall);
     merge_sides(h, l);
-    merge_cells(h, l, mass);
+    if (h->has_mass && h->nparts == 1) {
+      merge_jumping_masses(h, l, mass);
+    } else {
+      merge_masses(h, l, mass);
+    }
   }
   clear_sides(h);
   set_inverse(h, mass, wall);

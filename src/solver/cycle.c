@@ -11,7 +11,7 @@ enum { SWEEPS_DOWN = 2, SWEEPS_UP = 2 };
 
 /* Relax run q of a level where e is 0 everywhere. */
 static void relax_first(struct hierarchy *h, const struct level *level, int q) {
-  const int32_t begin = family_slot(level, 0, run_child(q));
+  const int32_t begin = run_begin(level, q);
   for (int c = 0; c < h->nparts; c++) {
     for (int32_t i = begin; i < begin + level->nfamilies; i++) {
       h->e[c][i] = h->inverse[c][i] * h->r[c][i];
@@ -101,9 +101,10 @@ static void prolong_block(struct hierarchy *h, int l, int c, int32_t first,
     }
   }
 #pragma GCC unroll 8
-  for (int q = begin; q < NCHILD; q++) {
+  for (int q = 0; q < NCHILD; q++) {
     const int child = run_child(q);
-    double *e = h->e[c] + family_slot(level, first, child);
+    double *e = h->e[c] + run_begin(level, q) + first;
+    if (q < begin) continue;
     for (int32_t k = 0; k < n; k++) {
       double sum = value[k];
 #pragma GCC unroll 3
@@ -142,6 +143,19 @@ static void reflect(struct hierarchy *h, int l) {
   }
 }
 
+/* Set the images of the nodes of run q of a level, NCHILD: of ghosts. */
+static void reflect_run(struct hierarchy *h, int l, int q) {
+  const int32_t *begin = h->mirror_run + l * (NCHILD + 1) + q;
+  for (int c = 0; c < h->nparts; c++) {
+    const double *beyond = h->beyond[l][c];
+    double *e = h->e[c], *image = e + h->nslots + h->njumps;
+    for (int32_t k = begin[0]; k < begin[1]; k++) {
+      const int32_t n = h->mirror_order[k];
+      image[n] = beyond[h->mirror[n].patch] * e[h->mirror[n].source];
+    }
+  }
+}
+
 /* Is everything of a colour relaxed after run q? Red and black keep the face
  * neighbours apart; for velocities, coupled across edges too, each child number
  * is a colour of its own, so that the order of nodes (and ranks) does not
@@ -155,7 +169,8 @@ static void end_run(struct hierarchy *h, int l, int q) {
   const bool velocity = h->nparts > 1;
   if (velocity) skin_nodes_relax(h, l, q);
   if (ends_colour(h, q)) copy_ghosts(h, l);
-  if (velocity) reflect(h, l);
+  if (velocity) reflect_run(h, l, q);
+  if (velocity && h->nranks > 1) reflect_run(h, l, NCHILD);
 }
 
 /* Sweep over the nodes near jumps of the coefficient. */

@@ -298,11 +298,12 @@ void hierarchy_destroy(struct hierarchy *h) {
     plan_end(copy);
   }
   krylov_space_destroy(h->krylov);
-  void *owned[] = {h->mirror,    h->sides,         h->beyond,    h->level,
-                   h->leaf_slot, h->family_parent, h->wall,      h->jump,
-                   h->coarse[0], h->coarse[1],     h->coarse[2], h->arena,
-                   h->residual,  h->weight,        h->rough,     h->rough_begin,
-                   h->skin_node, h->skin_begin};
+  void *owned[] = {
+      h->mirror,    h->sides,         h->beyond,       h->level,
+      h->leaf_slot, h->family_parent, h->wall,         h->jump,
+      h->coarse[0], h->coarse[1],     h->coarse[2],    h->arena,
+      h->residual,  h->weight,        h->rough,        h->rough_begin,
+      h->skin_node, h->skin_begin,    h->mirror_order, h->mirror_run};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   for (int f = 0; f < NFACE; f++) {
     mem_free(h->neighbour[f]);

@@ -96,6 +96,10 @@ struct hierarchy {
   struct jump *jump;
   int32_t nmirrors;
   struct mirror *mirror;
+  /* Mirrors level by level and on each by the run of the source, those of
+   * ghosts last */
+  int32_t *mirror_order; /* [nmirrors] */
+  int32_t *mirror_run;   /* [nlevels * (NCHILD + 1) + 1], where each begins */
   /* Operator: set by coefficients_set for each solve */
   int nparts;      /* 1, or DIM: velocity */
   bool has_mass;   /* somewhere, perhaps */
@@ -143,6 +147,10 @@ static inline int32_t family_slot(const struct level *level, int32_t k, int c) {
 static inline int run_child(int q) {
   const int j = q % HALF;
   return 2 * j + ((__builtin_popcount((unsigned)j) & 1) ^ q / HALF);
+}
+/* First slot of run q of a level. */
+static inline int32_t run_begin(const struct level *level, int q) {
+  return level->begin + q * level->nfamilies;
 }
 /* Number of the pair of axes a < b: 01, 02, 12. */
 static inline int pair_number(int a, int b) { return a + b - 1; }

@@ -46,6 +46,42 @@ static void link_corners(struct linking *k, const struct side *side, int a,
   }
 }
 
+/* Return the place of a mirror of level l in `mirror_run`. */
+static int run_of(const struct hierarchy *h, int l,
+                  const struct mirror *mirror) {
+  const struct level *level = &h->level[l];
+  const bool owned = l > 0 && mirror->source < h->nowned;
+  return l * (NCHILD + 1) +
+         (owned ? (mirror->source - level->begin) / level->nfamilies : NCHILD);
+}
+
+static void sort_by_runs(struct hierarchy *h) {
+  const int n = h->nlevels * (NCHILD + 1);
+  h->mirror_order = MEM_NEW(int32_t, h->nmirrors);
+  h->mirror_run = MEM_NEW(int32_t, n + 1);
+  for (int pass = 0; pass < 2; pass++) {
+    for (int l = 0; l < h->nlevels; l++) {
+      const struct level *level = &h->level[l];
+      for (int32_t k = level->mirror_begin; k < level->mirror_end; k++) {
+        const int run = run_of(h, l, &h->mirror[k]);
+        if (pass == 0) {
+          h->mirror_run[run + 1]++;
+        } else {
+          h->mirror_order[h->mirror_run[run]++] = k;
+        }
+      }
+    }
+    /* sizes become beginnings, and ends beginnings again */
+    for (int q = 0; q < n && pass == 0; q++) {
+      h->mirror_run[q + 1] += h->mirror_run[q];
+    }
+    for (int q = n; q > 0 && pass == 1; q--) {
+      h->mirror_run[q] = h->mirror_run[q - 1];
+    }
+  }
+  h->mirror_run[0] = 0;
+}
+
 void mirrors_make(struct linking *k) {
   struct hierarchy *h = k->h;
   for (int l = 0; l < h->nlevels; l++) {
@@ -63,4 +99,5 @@ void mirrors_make(struct linking *k) {
     }
     h->level[l].mirror_end = h->nmirrors;
   }
+  sort_by_runs(h);
 }

@@ -28,9 +28,11 @@ static void operate(const struct context *k, const double *p, double *q) {
   const struct mesh *mesh = k->mesh;
   double *flux = k->h->work_faces;
   poisson_flux(mesh, k->alpha_f, p, flux);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double divergence = mesh_divergence(mesh, flux, i);
-    q[i] = k->mass ? divergence - k->mass[i] * p[i] : divergence;
+  for (int32_t i = 0; i < mesh->nleaves && k->mass; i++) {
+    q[i] = mesh_divergence(mesh, flux, i) - k->mass[i] * p[i];
+  }
+  for (int32_t i = 0; i < mesh->nleaves && !k->mass; i++) {
+    q[i] = mesh_divergence(mesh, flux, i);
   }
 }
 
@@ -63,10 +65,10 @@ static void precondition(void *context, const double *r, double size,
 static bool has_level(const struct mesh *mesh, const double *alpha_f,
                       const double *mass, const struct bc *bc) {
   double found = 0;
-  for (int32_t i = 0; i < mesh->nleaves && mass; i++) {
+  for (int32_t i = 0; mass && i < mesh->nleaves && found == 0; i++) {
     if (mass[i] > 0) found = 1;
   }
-  for (int32_t f = 0; f < mesh->nfaces; f++) {
+  for (int32_t f = 0; f < mesh->nfaces && found == 0; f++) {
     const int patch = mesh->face_patch[f];
     if (patch >= 0 && bc[patch].type != BC_NEUMANN && alpha_f[f] > 0) {
       found = 1;

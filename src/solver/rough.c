@@ -51,7 +51,7 @@ static void list_marked(struct hierarchy *h, const double *mark) {
   for (int l = 0; l < h->nlevels; l++) {
     const struct level *level = &h->level[l];
     for (int colour = 0; colour < NCHILD; colour++) {
-      const int32_t first = family_slot(level, 0, run_child(colour));
+      const int32_t first = run_begin(level, colour);
       h->rough_begin[l * NCHILD + colour] = n;
       for (int32_t k = 0; k < level->nfamilies; k++) {
         if (mark[first + k] > 0) h->rough[n++] = first + k;

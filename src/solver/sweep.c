@@ -130,7 +130,7 @@ static void add_bulk(struct hierarchy *h, int32_t i) {
 }
 
 void sweep_relax(struct hierarchy *h, const struct level *level, int q) {
-  const int32_t begin = family_slot(level, 0, run_child(q));
+  const int32_t begin = run_begin(level, q);
   if (h->nparts > 1) {
     relax_velocity(h, level, q);
   } else {
@@ -185,7 +185,7 @@ void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
   } else {
     residuals_scalar(h, level, q, first, n, sum);
   }
-  const int32_t begin = family_slot(level, 0, run_child(q)) + first;
+  const int32_t begin = run_begin(level, q) + first;
   for (int c = 0; c < h->nparts && h->has_bulk; c++) {
     for (int32_t k = 0; k < n; k++) sum[c][k] += bulk_pull(h, begin + k, c);
   }
