@@ -51,7 +51,7 @@ struct field {
   struct bc bc[MESH_MAX_PATCHES];
 };
 
-enum { FIELDS_MAX = 64 };
+enum { FIELDS_MAX = 128 };
 struct fields {
   int n;
   struct field *field[FIELDS_MAX]; /* owned */

@@ -18,9 +18,10 @@
  *   eta = eta_f + tau_y/sqrt(gamma^2 + gamma_r^2)                        (4)
  *
  * for "clip" (2), "papanastasiou" (3) and "bercovier_engelman" (4), and cuts
- * the result to [eta_min, eta_max]. (2) is [valette_2019, eq. 3], (4) with
- * eta_min the viscosity of air is [valette_2019, eq. 7], and gamma_r is the key
- * gamma_r; 1/gamma_r is Papanastasiou's time m. The cap of
+ * the result to [eta_min, eta_max]; "exact" caps nothing, and the stress is
+ * made of both parts by the model (two_phase/yield.h). (2) is [valette_2019,
+ * eq. 3], (4) with eta_min the viscosity of air is [valette_2019, eq. 7], and
+ * gamma_r is the key gamma_r; 1/gamma_r is Papanastasiou's time m. The cap of
  * [lagree_staron_popinet_2011] is (2) with eta_max = 250 rho sqrt(g H^3).
  *
  * Negative pressure counts as 0. Results are finite and >= 0 for gamma and p
@@ -121,7 +122,8 @@ struct rheology_model {
 enum rheology_regularisation {
   RHEOLOGY_CLIP,
   RHEOLOGY_PAPANASTASIOU,
-  RHEOLOGY_BERCOVIER_ENGELMAN
+  RHEOLOGY_BERCOVIER_ENGELMAN,
+  RHEOLOGY_EXACT /* rheology_eval takes it as clip; rheology_parts does not */
 };
 
 /* A closure with its parameters: what a phase of a case holds. Copies share
@@ -193,6 +195,19 @@ void rheology_release(struct rheology *r);
 void rheology_eval(const struct rheology *r, double time, int32_t n,
                    const double *shear_rate, const double *pressure,
                    double *eta);
+
+/*
+ * Compute the two parts of (2), of which a model that keeps the yield stress as
+ * a field makes the stress: eta[i] the plastic viscosity, more where the stress
+ * would be below eta_min gamma, and tau_y[i] the yield stress with cohesion,
+ * Pa. All [n].
+ */
+void rheology_parts(const struct rheology *r, double time, int32_t n,
+                    const double *shear_rate, const double *pressure,
+                    double *eta, double *tau_y);
+
+/* Does the closure have a yield stress? */
+bool rheology_yields(const struct rheology *r);
 
 /* Compute quantity k < r->model->noutputs as rheology_eval does the viscosity;
  * all [n]. */

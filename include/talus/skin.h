@@ -25,6 +25,7 @@
 #ifndef TALUS_SKIN_H
 #define TALUS_SKIN_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "talus/mesh.h"
@@ -45,12 +46,21 @@ struct skin_leaf {
 };
 
 struct skin {
+  bool grains_only; /* w_k = c c_k of both ends of line k, no stress is left
+                       out: what grains do depends on grains alone */
   int32_t n, room;
   struct skin_face *face; /* [n], those with weights; owned */
   int32_t nleaves, leaf_room;
   struct skin_leaf
       *leaf; /* [nleaves], all that are beside the surface; owned */
 };
+
+/* Give the weight of a line at a face between nodes of which the smaller part
+ * of grains is `grains`, from a node with the part `near` to one with `far`. */
+static inline double skin_weight(bool grains_only, double grains, double near,
+                                 double far) {
+  return grains_only ? near * far : 1 - grains * (1 - far);
+}
 
 /* Make a skin, owned by the caller. NULL is a skin without faces. */
 struct skin *skin_new(void);

@@ -183,6 +183,19 @@ static void choose_permeable(struct params *params) {
                         closure_depends_on_pressure(&params->grains.rheology)));
 }
 
+/* Refuse an exact yield stress, which is that of the end of a step, with
+ * Crank-Nicolson. */
+static void check_yield(struct case_file *file) {
+  const struct params *params = &file->params;
+  const struct rheology *grains = &params->grains.rheology;
+  if (grains->model != NULL && grains->regularisation == RHEOLOGY_EXACT &&
+      rheology_yields(grains) && params->theta < 1)
+    read_fail_at(file, "solver.theta",
+                 "solver.theta = %g: regularisation = \"exact\" needs backward "
+                 "Euler, solver.theta = 1",
+                 params->theta);
+}
+
 static void check_walls(struct case_file *file) {
   if (file->params.dimension == 3 && file->params.side_walls.mu > 0)
     read_fail_at(file, "grains.side_walls",
@@ -245,6 +258,7 @@ void build_params(struct case_file *file) {
   check_phases(file);
   choose_permeable(&file->params);
   check_walls(file);
+  check_yield(file);
   check_grid(file);
   check_origin(file);
   boundary_check(file);

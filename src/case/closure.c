@@ -139,6 +139,16 @@ static void read_key(struct case_file *file, const char *closure,
     read_fail_at(file, path, "%s is missing: %s (%s)", path, allowed,
                  known->help);
   }
+  const bool exact = phase->rheology.regularisation == RHEOLOGY_EXACT;
+  if (exact && (strcmp(known->name, "eta_max") == 0 ||
+                strcmp(known->name, "gamma_r") == 0)) {
+    if (given)
+      read_fail_at(file, path,
+                   "%s = %g has no meaning with regularisation = \"exact\", "
+                   "which caps nothing: take it out, or take \"clip\"",
+                   path, value);
+    return;
+  }
   rheology_set(&phase->rheology, known->name, value);
   if (!given && strcmp(known->name, "cohesion") == 0) return;
   /* Nothing depends on the shear rate of a regularisation that is not used. */
@@ -160,6 +170,12 @@ void closure_read(struct case_file *file, const struct key *key) {
   read_regularisation(file, key->path, &phase->rheology);
   for (int i = 0; rheology_key(model, i) != NULL; i++)
     read_key(file, key->path, phase, i);
+  if (phase->rheology.regularisation == RHEOLOGY_EXACT &&
+      phase == &file->params.gas)
+    read_fail_at(file, key->path,
+                 "%s: regularisation = \"exact\" is for the grains; take "
+                 "\"clip\" for the gas",
+                 key->path);
   if (phase->rheology.eta_min > phase->rheology.eta_max)
     read_fail_at(file, key->path, "%s: eta_min = %g is above eta_max = %g",
                  key->path, phase->rheology.eta_min, phase->rheology.eta_max);

@@ -127,7 +127,10 @@ static const char CREEP[] =
     "  below 1e-4 sqrt(g H). Besides, a skin of a quarter of a cell settles\n"
     "  whatever the cap, as friction vanishes with the pressure at a surface:\n"
     "  the top of a slope of 0.2 (mu_s = 0.38) sinks by that until t = 50\n"
-    "  sqrt(H/g) on cells of H/8 and H/16, eta_max = 1e3 and 1e4.\n";
+    "  sqrt(H/g) on cells of H/8 and H/16, eta_max = 1e3 and 1e4.\n"
+    "  regularisation = \"exact\" caps nothing: grains whose yield stress is "
+    "not\n"
+    "  reached come to rest (examples/rest.lua).\n";
 
 static void print_closures(FILE *f) {
   const struct rheology_model *model;

@@ -11,6 +11,7 @@ static const char *const TAKEN[] = {
     "fraction", "pressure", "density", "viscosity", "velocity", "acceleration",
     "frozen", "plane", "band", "drag", "shear_rate", "acceleration_", "face_",
     "velocity_", "viscous_", "normal_", "old_", "cell_", "source", "carrier",
+    "stress_", "strain_", "yield_stress", "yield_state",
     /* snapshots and checkpoints */
     "cells", "vertices", "level", "levels", "fields", "parameters", "partition",
     "state", "time", "step",

@@ -16,7 +16,7 @@
 #include "talus/grid.h"
 #include "talus/memory.h"
 
-enum { REMAP_MOST = FIELDS_MAX + NFACE + 1 };
+enum { REMAP_MOST = FIELDS_MAX * (NFACE + 1) };
 
 static double slope_along(const struct mesh *mesh, const double *v, int32_t i,
                           int d) {

@@ -52,6 +52,7 @@ static void add_yield(const struct rheology *r, int32_t n,
                       double *eta) {
   switch (r->regularisation) {
     case RHEOLOGY_CLIP:
+    case RHEOLOGY_EXACT:
       add_clip(r, n, shear_rate, tau_y, eta);
       break;
     case RHEOLOGY_PAPANASTASIOU:
@@ -83,6 +84,10 @@ static void yield_stress(const struct rheology *r, int32_t n,
   if (r->model->yield != NULL)
     r->model->yield(r, n, shear_rate, pressure, tau_y);
   for (int32_t i = 0; i < n && cohesion > 0; i++) tau_y[i] += cohesion;
+}
+
+bool rheology_yields(const struct rheology *r) {
+  return r->model->yield != NULL || r->cohesion > 0;
 }
 
 const char *rheology_prepare(struct rheology *r) {
@@ -117,11 +122,32 @@ void rheology_eval(const struct rheology *r, double time, int32_t n,
       model->eval(r, m, gamma, p, eta + begin);
     else
       r->user(r->context, time, m, gamma, p, eta + begin);
-    if (model->yield != NULL || r->cohesion > 0) {
+    if (rheology_yields(r)) {
       yield_stress(r, m, gamma, p, tau_y);
       add_yield(r, m, gamma, tau_y, eta + begin);
     }
     clip_eta(r, m, eta + begin);
+  }
+}
+
+void rheology_parts(const struct rheology *r, double time, int32_t n,
+                    const double *shear_rate, const double *pressure,
+                    double *eta, double *tau_y) {
+  const struct rheology_model *model = r->model;
+  double p[RHEOLOGY_BLOCK];
+  check_prepared(r);
+  for (int32_t begin = 0; begin < n; begin += RHEOLOGY_BLOCK) {
+    int32_t m = n - begin < RHEOLOGY_BLOCK ? n - begin : RHEOLOGY_BLOCK;
+    const double *gamma = shear_rate + begin;
+    clip_pressure(m, pressure + begin, p);
+    if (model->eval != NULL)
+      model->eval(r, m, gamma, p, eta + begin);
+    else
+      r->user(r->context, time, m, gamma, p, eta + begin);
+    yield_stress(r, m, gamma, p, tau_y + begin);
+    for (int32_t i = begin; i < begin + m; i++)
+      eta[i] = at_least(
+          eta[i], r->eta_min - tau_y[i] / at_least(shear_rate[i], DBL_MIN));
   }
 }
 

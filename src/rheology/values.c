@@ -19,6 +19,7 @@ static const char *const REGULARISATIONS[] = {
     [RHEOLOGY_CLIP] = "clip",
     [RHEOLOGY_PAPANASTASIOU] = "papanastasiou",
     [RHEOLOGY_BERCOVIER_ENGELMAN] = "bercovier_engelman",
+    [RHEOLOGY_EXACT] = "exact",
 };
 
 const struct rheology_key *rheology_key(const struct rheology_model *model,

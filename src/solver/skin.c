@@ -38,14 +38,15 @@ static inline double grain_part(double c, double ratio) {
 /* Weigh the lines along t of face f of axis d, `grains` being M and m that of
  * the stencil; returns false if all are whole. */
 static bool weigh_lines(const struct mesh *mesh, int d, int32_t f, int t,
-                        const double *m, double grains,
+                        const double *m, double grains, bool grains_only,
                         struct skin_face *face) {
   double weight[4], sum = 0, least = 1;
   int place[2];
   face_places(mesh, d, f, place);
   for (int k = 0; k < 4; k++) {
     const int end = place[k / 2] + (k & 1 ? 1 : -1) * stencil_step(t);
-    weight[k] = 1 - grains * (1 - m[end]);
+    weight[k] =
+        grains_only ? m[place[k / 2]] * m[end] : 1 - grains * (1 - m[end]);
     sum += weight[k];
     least = min2(least, weight[k]);
   }
@@ -54,7 +55,7 @@ static bool weigh_lines(const struct mesh *mesh, int d, int32_t f, int t,
     face->node[t][k] = mesh->stencil[mesh->face_owner[f]][end];
     face->weight[t][k] = sum > 0 ? weight[k] / sum : 0;
   }
-  face->part[t] = min2(sum, 1);
+  face->part[t] = grains_only ? 1 : min2(sum, 1);
   return least < 1 - WHOLE;
 }
 
@@ -102,7 +103,9 @@ static void find_face(const struct mesh *mesh, int d, int32_t f,
   const double grains = min2(m[place[0]], m[place[1]]);
   if (grains < WHOLE) return;
   for (int t = 0; t < DIM; t++) {
-    found = (t != d && weigh_lines(mesh, d, f, t, m, grains, &face)) || found;
+    found = (t != d &&
+             weigh_lines(mesh, d, f, t, m, grains, skin->grains_only, &face)) ||
+            found;
   }
   if (found) add_face(skin, &face);
 }

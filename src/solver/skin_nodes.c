@@ -35,14 +35,15 @@ static void list_plane(const struct hierarchy *h, int32_t i, int a, int b,
 
 /* Add to a row what the weights change at the face beyond which lies node 4 +
  * `over`, if that is much; the lines go along `step`. */
-static bool add_face(const double m[9], double w, int over, int step,
-                     double row[9]) {
+static bool add_face(const double m[9], bool grains_only, double w, int over,
+                     int step, double row[9]) {
   const double grains = min2(m[4], m[4 + over]);
   double weight[4], sum = 0, most = 0;
   if (w == 0) return false;
   for (int k = 0; k < 4; k++) {
     const int end = 4 + (k < 2 ? 0 : over) + (k & 1 ? step : -step);
-    weight[k] = 1 - grains * (1 - m[end]);
+    const int base = 4 + (k < 2 ? 0 : over);
+    weight[k] = skin_weight(grains_only, grains, m[base], m[end]);
     sum += weight[k];
   }
   const double scale = sum > 0 ? 1 / sum : 0;
@@ -63,7 +64,7 @@ static bool add_face(const double m[9], double w, int over, int step,
 /* Fill the rows of a node, m being that of its stencil; false if nothing
  * changes. */
 static bool set_rows(const struct hierarchy *h, const double *m,
-                     struct skin_node *node) {
+                     bool grains_only, struct skin_node *node) {
   bool odd = false;
   memset(node->row, 0, sizeof node->row);
   for (int a = 0; a < DIM; a++) {
@@ -78,8 +79,8 @@ static bool set_rows(const struct hierarchy *h, const double *m,
       for (int s = -1; s <= 1; s += 2) {
         const double wa = (double)h->w[2 * a + (s > 0)][node->slot];
         const double wb = (double)h->w[2 * b + (s > 0)][node->slot];
-        odd = add_face(near, wb, 3 * s, 1, node->row[p][0]) || odd;
-        odd = add_face(near, wa, s, 3, node->row[p][1]) || odd;
+        odd = add_face(near, grains_only, wb, 3 * s, 1, node->row[p][0]) || odd;
+        odd = add_face(near, grains_only, wa, s, 3, node->row[p][1]) || odd;
       }
     }
   }
@@ -148,13 +149,14 @@ static void sort_leaves(const struct hierarchy *h, const struct skin *skin,
 }
 
 /* Add the node of a leaf if it has a face with odd weights. */
-static void add_node(struct hierarchy *h, const struct skin_leaf *leaf) {
+static void add_node(struct hierarchy *h, const struct skin_leaf *leaf,
+                     bool grains_only) {
   const struct level *level = &h->level[h->mesh->level[leaf->leaf]];
   struct skin_node *node = &h->skin_node[h->nskin];
   node->slot = h->leaf_slot[leaf->leaf];
   const int32_t family = (node->slot - level->begin) % level->nfamilies;
   node->parent = h->family_parent[level->family_begin + family];
-  if (!set_rows(h, leaf->grains, node)) return;
+  if (!set_rows(h, leaf->grains, grains_only, node)) return;
   set_block(h, node);
   h->nskin++;
 }
@@ -181,7 +183,7 @@ void skin_nodes_set(struct hierarchy *h, const struct skin *skin) {
   for (int q = 0; q < nruns; q++) {
     const int32_t end = h->skin_begin[q];
     h->skin_begin[q] = h->nskin;
-    for (; k < end; k++) add_node(h, sorted[k]);
+    for (; k < end; k++) add_node(h, sorted[k], skin->grains_only);
   }
   h->skin_begin[nruns] = h->nskin;
   mem_free(sorted);

@@ -9,6 +9,7 @@
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/log.h"
+#include "talus/memory.h"
 #include "talus/two_phase/closure_fields.h"
 #include "talus/two_phase/conditions.h"
 #include "talus/two_phase/creep.h"
@@ -78,10 +79,16 @@ static bool is_at_rest(struct model *model) {
 }
 
 static void outputs(struct model *model, bool make) {
-  if (make)
-    closure_fields_update(of(model));
-  else
-    closure_fields_release(of(model));
+  struct two_phase *sim = of(model);
+  struct field *state = sim->yield.state; /* NULL unless exact */
+  if (make) {
+    closure_fields_update(sim);
+    if (state) state->v = MEM_NEW(double, sim->grid.mesh->nleaves);
+    if (state) yield_find_state(sim, state->v);
+  } else {
+    closure_fields_release(sim);
+    if (state) mem_free(state->v), state->v = NULL;
+  }
 }
 
 static void remember(struct model *model) {

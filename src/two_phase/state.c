@@ -104,6 +104,33 @@ static double merge_momentum(const struct remap *remap,
 static const struct field_rule momentum_rule = {divide_momentum,
                                                 merge_momentum};
 
+static struct field *add_kept_face(struct two_phase *sim, const char *name,
+                                   const char *unit, const char *title) {
+  struct field *field = fields_add(&sim->grid.fields, sim->grid.mesh, name,
+                                   unit, title, FIELD_FACE, &remap_faces);
+  field->restart = true;
+  return field;
+}
+
+/* Add the fields of an exact yield. */
+static void add_yield(struct two_phase *sim) {
+  static const char *const stress[] = {"stress_0", "stress_1", "stress_2",
+                                       "stress_3", "stress_4"};
+  static const char *const strain[] = {"strain_0", "strain_1", "strain_2",
+                                       "strain_3", "strain_4"};
+  static const char *const trend[] = {"strain_trend_0", "strain_trend_1",
+                                      "strain_trend_2", "strain_trend_3",
+                                      "strain_trend_4"};
+  struct yield *yield = &sim->yield;
+  for (int k = 0; k < STRAIN_ROWS; k++) {
+    yield->s[k] = add_kept_face(sim, stress[k], "Pa", "yield stress");
+    yield->strain[k] = add_kept_face(sim, strain[k], "1/s", "rate of strain");
+    yield->trend[k] = add_kept_face(sim, trend[k], "1/s^2", "its change");
+  }
+  yield->tau_y = fields_add(&sim->grid.fields, sim->grid.mesh, "yield_stress",
+                            "Pa", "", FIELD_FACE, NULL);
+}
+
 static void add_state(struct two_phase *sim) {
   static const char *const velocity[] = {"velocity_x", "velocity_y",
                                          "velocity_z"};
@@ -129,9 +156,11 @@ static void add_state(struct two_phase *sim) {
   }
   sim->p = add_cell(sim, "pressure", "Pa", "pressure", &remap_linear, true);
   sim->u_f =
-      fields_add(&sim->grid.fields, sim->grid.mesh, "face_velocity", "m/s",
-                 "normal velocity at faces", FIELD_FACE, &remap_faces);
-  sim->u_f->restart = true;
+      add_kept_face(sim, "face_velocity", "m/s", "normal velocity at faces");
+  const struct rheology *grains = &sim->params->grains.rheology;
+  sim->exact =
+      grains->regularisation == RHEOLOGY_EXACT && rheology_yields(grains);
+  if (sim->exact) add_yield(sim);
 }
 
 static struct field *add_face(struct two_phase *sim, const char *name) {
@@ -188,6 +217,10 @@ static void add_scratch(struct two_phase *sim) {
     sim->u[d]->old = sim->u_old[d];
   }
   add_known(sim);
+  if (sim->exact) {
+    sim->yield.state =
+        add_output(sim, "yield_state", "1", "0: held, 1: at the yield stress");
+  }
   if (sim->params->side_walls.mu > 0) add_walls(sim);
   if (sim->params->permeable) add_percolation(sim);
   sim->eta_f = add_face(sim, "face_viscosity");
@@ -198,9 +231,10 @@ static void add_scratch(struct two_phase *sim) {
   mem_free(sim->u_half->v);
   sim->u_half->v = NULL;
   sim->u_f->old = sim->u_half; /* when a step has failed */
-  const int ncells = (sim->params->theta < 1 ? 3 : 2) * DIM + 1;
+  const bool more = sim->params->theta < 1 || sim->exact;
+  const int ncells = (more ? 3 : 2) * DIM + 1;
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, ncells,
-               DIM + 2);
+               (sim->exact ? STRAIN_ROWS : DIM) + 2);
 }
 
 struct two_phase *two_phase_new_on(const struct params *params,

@@ -28,7 +28,7 @@
  *     u_f^{n+1/2} = its normal part less dt/2 alpha_f grad phi, solenoidal
  *     u <- u - dt/h sum_d [u_f^{n+1/2} (u^{n+1/2} - u^n)]_d
  * and, once or repeatedly with eta_f of the latest u and p (repeat_properties),
- * diffuse_momentum
+ * diffuse_momentum     with "exact" as yield.h says, else
  *     (rho + dt drag) u* - theta dt div(2 eta D(u*))
  *         = rho (u + dt g) + (1 - theta) dt div(2 eta D(u^n))
  *     v = (u* - u)/dt - g + drag/rho u*
@@ -39,6 +39,7 @@
  *     u_f^{n+1} = u_f - dt alpha_f grad p
  *     g = A(gravity_f - alpha_f grad p)
  *     u^{n+1} = u* + dt g
+ *     with "exact" u_f is then made anew from u^{n+1} (carry_with_grains)
  * then
  * viscous_work_add     what viscosity has taken from grains and gas
  * two_phase_adapt      if the surface has moved far enough
@@ -66,6 +67,7 @@
 #include "talus/projection.h"
 #include "talus/side_walls.h"
 #include "talus/skin.h"
+#include "talus/strain.h"
 #include "talus/two_phase/fractions.h"
 #include "talus/two_phase/percolation.h"
 #include "talus/two_phase/pressure_level.h"
@@ -85,6 +87,9 @@
  * others the pressure of grains that have just left would do too much
  * (docs/notes/surface.md). */
 #define HOLDS_GRAINS 0.01
+
+/* Density of a gas that weighs nothing, in that of the grains. */
+#define WEIGHTLESS 1e-12
 
 /* A divergence below this part of the rate of flow is round-off. */
 #define SOLENOIDAL 1e-12
@@ -149,7 +154,9 @@ static void update_density(struct two_phase *sim) {
   field_fill(mesh, sim->c);
   fractions_update_planes(sim);
   if (!sim->params->single_phase) {
-    skin_find(mesh, sim->c->v, density[1] / density[0], sim->skin);
+    sim->skin->grains_only = sim->exact;
+    skin_find(mesh, sim->c->v, sim->exact ? 1 : density[1] / density[0],
+              sim->skin);
   }
   properties_density(mesh, density, sim->c->v, sim->grid.closed, sim->rho->v,
                      sim->alpha_f->v);
@@ -204,7 +211,12 @@ static void update_viscosity(struct two_phase *sim,
   field_arrays(velocity, u), field_arrays(sim->normal, normal);
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 3, work);
   fill_pressure(sim);
-  properties_shear_rate(mesh, sim->skin, u, work[0]);
+  if (sim->exact) {
+    scratch_give(&sim->scratch, __func__);
+    yield_update(sim, u);
+    return;
+  }
+  strain_shear_rate(mesh, sim->skin, u, work[0]);
   properties_viscosity(mesh, sim->model.time, &params->grains,
                        params->single_phase ? NULL : &params->gas,
                        params->gravity, sim->c->v, normal, sim->plane->v,
@@ -215,9 +227,10 @@ static void update_viscosity(struct two_phase *sim,
 
 /* Make u_f solenoidal: to the tolerance by a projection over dt with a pressure
  * that starts from 0, then to round-off by cleaning. */
-static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
-                                          double *u_f) {
-  struct projection projection = begin_projection(sim);
+static struct solve_stats make_solenoidal_by(struct two_phase *sim,
+                                             const struct projection *by,
+                                             double dt, double *u_f) {
+  struct projection projection = *by;
   double *phi = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   struct bc bc[MESH_MAX_PATCHES];
   memcpy(bc, sim->p->bc, sizeof bc);
@@ -226,8 +239,16 @@ static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
   memset(phi, 0, (size_t)sim->grid.mesh->ncells * sizeof(double));
   struct solve_stats stats = projection_project(&projection, dt, u_f, phi);
   scratch_give(&sim->scratch, __func__);
-  end_projection(sim);
   clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open, u_f);
+  return stats;
+}
+
+static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
+                                          double *u_f) {
+  const struct projection projection = begin_projection(sim);
+  const struct solve_stats stats =
+      make_solenoidal_by(sim, &projection, dt, u_f);
+  end_projection(sim);
   return stats;
 }
 
@@ -362,12 +383,66 @@ static const double *mass_with_walls(struct two_phase *sim, double dt) {
   return mass;
 }
 
-/* Solve the viscous equation for u* and v. The guess is u + dt (g + v) with v
- * of the last step, less the friction of the walls. */
-static void diffuse_momentum(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->grid.mesh;
+/* Add the iterations of an earlier solve of the step, and keep the worse result
+ * of the two: a repetition that converges must not hide one that did not. */
+static void add_solve(struct solve_stats *last,
+                      const struct solve_stats *before) {
+  const int iterations = last->iterations + before->iterations;
+  const bool failed = last->status != SOLVE_CONVERGED;
+  if (before->status != SOLVE_CONVERGED
+          ? !failed || !(before->residual_after <= last->residual_after)
+          : !failed && before->residual_after > last->residual_after) {
+    *last = *before;
+  }
+  last->iterations = iterations;
+}
+
+/* Solve the viscous equation with this viscosity. */
+static struct solve_stats solve_viscous(struct two_phase *sim, double dt,
+                                        const double *mass, const double *eta_f,
+                                        double *const rhs[DIM],
+                                        const struct bc *const bc[DIM],
+                                        double *const u[DIM]) {
   const struct params *params = sim->params;
-  const struct viscosity viscosity = viscosity_of(sim);
+  struct viscosity viscosity = viscosity_of(sim);
+  viscosity.eta_f = eta_f;
+  return viscous_solve(sim->grid.mesh, sim->grid.hierarchy, mass, &viscosity,
+                       params->theta * dt, rhs, bc,
+                       params->tolerance_viscous * sim->scale,
+                       params->max_iterations, u);
+}
+
+/* Solve with an exact yield (yield.h) in repetition `repetition` of a step:
+ * once, but FIRST_SOLVES times in the first step, which knows no stress yet. */
+static void solve_yield(struct two_phase *sim, double dt, int repetition,
+                        const double *mass, double *const rhs[DIM],
+                        const struct bc *const bc[DIM], double *const u[DIM]) {
+  enum { FIRST_SOLVES = 3 };
+  const struct mesh *mesh = sim->grid.mesh;
+  const bool first = sim->model.step == 0;
+  double *full[DIM];
+  double *eta = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, full);
+  for (int k = 0; k < (first ? FIRST_SOLVES : 1); k++) {
+    const struct solve_stats before = sim->viscous;
+    const bool again = first || repetition > 0;
+    yield_linearise(sim, again ? 0 : dt, eta, full);
+    for (int e = 0; e < DIM; e++) {
+      for (int32_t i = 0; i < mesh->nleaves; i++) {
+        full[e][i] = rhs[e][i] + dt * full[e][i];
+      }
+    }
+    sim->viscous = solve_viscous(sim, dt, mass, eta, full, bc, u);
+    yield_advance(sim, dt, u, again);
+    if (k > 0) add_solve(&sim->viscous, &before);
+  }
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Solve the viscous equation for u* and v, in repetition k. The guess is u + dt
+ * (g + v) with v of the last step, less the friction of the walls. */
+static void diffuse_momentum(struct two_phase *sim, double dt, int k) {
+  const struct mesh *mesh = sim->grid.mesh;
   double *u[DIM], *rhs[DIM];
   const struct bc *bc[DIM];
   field_arrays(sim->u, u);
@@ -385,9 +460,11 @@ static void diffuse_momentum(struct two_phase *sim, double dt) {
     }
   }
   sim->scale = velocity_scale(sim, dt);
-  sim->viscous = viscous_solve(
-      mesh, sim->grid.hierarchy, mass, &viscosity, params->theta * dt, rhs, bc,
-      params->tolerance_viscous * sim->scale, params->max_iterations, u);
+  if (sim->exact) {
+    solve_yield(sim, dt, k, mass, rhs, bc, u);
+  } else {
+    sim->viscous = solve_viscous(sim, dt, mass, sim->eta_f->v, rhs, bc, u);
+  }
   for (int e = 0; e < DIM; e++) {
     double *viscous_g = sim->viscous_g[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -437,20 +514,6 @@ static void measure_repetition(struct two_phase *sim, int k,
            (long long)sim->model.step, k, sim->repeat_change, sim->scale);
 }
 
-/* Add the iterations of an earlier solve of the step, and keep the worse result
- * of the two: a repetition that converges must not hide one that did not. */
-static void add_solve(struct solve_stats *last,
-                      const struct solve_stats *before) {
-  const int iterations = last->iterations + before->iterations;
-  const bool failed = last->status != SOLVE_CONVERGED;
-  if (before->status != SOLVE_CONVERGED
-          ? !failed || !(before->residual_after <= last->residual_after)
-          : !failed && before->residual_after > last->residual_after) {
-    *last = *before;
-  }
-  last->iterations = iterations;
-}
-
 static void add_wall_work(struct two_phase *sim, double dt) {
   double *u[DIM];
   if (!sim->drag) return;
@@ -476,6 +539,32 @@ static const double *turn_face_velocity(struct two_phase *sim, int k) {
   return NULL;
 }
 
+/* Make u_f the solenoidal part of the mean of u^{n+1} on both sides of a face,
+ * which vanishes where grains rest (yield.h). Both the mean and the projection
+ * are by mass with a gas that weighs nothing, so that its currents are felt by
+ * itself alone. */
+static void carry_with_grains(struct two_phase *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double density[2] = {1, WEIGHTLESS};
+  struct projection projection = begin_projection(sim);
+  double *rho = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  double *alpha_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  double *u[DIM];
+  static const struct bc neumann[MESH_MAX_PATCHES];
+  const struct bc *bc[] = {neumann};
+  field_arrays(sim->u, u);
+  field_fill_many(mesh, DIM, sim->u);
+  field_fill(mesh, sim->c);
+  properties_density(mesh, density, sim->c->v, sim->grid.closed, rho, alpha_f);
+  mesh_fill(mesh, 1, &rho, bc, false);
+  projection.rho = rho;
+  projection.alpha_f = alpha_f;
+  projection_face_velocity(&projection, 0, u, sim->u_f->v);
+  make_solenoidal_by(sim, &projection, dt, sim->u_f->v);
+  scratch_give(&sim->scratch, __func__);
+  end_projection(sim);
+}
+
 /* Find p, u_f and u at the end of the step; k counts repetitions. */
 static void project(struct two_phase *sim, double dt, int k) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -493,6 +582,7 @@ static void project(struct two_phase *sim, double dt, int k) {
     for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * g[e][i];
     mesh_touch(mesh, u[e]);
   }
+  if (sim->exact) carry_with_grains(sim, dt);
   measure_repetition(sim, k, last);
 }
 
@@ -582,7 +672,7 @@ static void advance_state(struct two_phase *sim, double dt, double rate) {
   for (int k = 0; k <= sim->params->picard; k++) {
     const struct solve_stats viscous = sim->viscous, pressure = sim->pressure;
     repeat_properties(sim, k, advected), lap(sim, STAGE_RHEOLOGY);
-    diffuse_momentum(sim, dt), lap(sim, STAGE_VISCOUS);
+    diffuse_momentum(sim, dt, k), lap(sim, STAGE_VISCOUS);
     project(sim, dt, k), lap(sim, STAGE_PROJECTION);
     if (k > 0) add_solve(&sim->viscous, &viscous);
     if (k > 0) add_solve(&sim->pressure, &pressure);

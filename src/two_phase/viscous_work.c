@@ -30,7 +30,8 @@ static void boundary_power(const struct two_phase *sim, const double density[2],
         const double *u = sim->u[e]->v, wall = sim->u[e]->bc[patch].value;
         const double eta = (e == d ? 2 : 1) * sim->eta_f->v[f];
         const double stress =
-            mesh_slope(mesh, f, eta * (u[node[1]] - u[node[0]]));
+            mesh_slope(mesh, f, eta * (u[node[1]] - u[node[0]])) +
+            (sim->exact ? sim->yield.s[e]->v[f] : 0);
         sum += out * area * wall * stress;
       }
       power[0] += c * density[0] / sim->rho->v[i] * sum;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/strain.h"
 #include "talus/two_phase/properties.h"
 
 #include <check.h>
@@ -120,7 +121,7 @@ START_TEST(shear_rate_of_linear_velocities_is_exact) {
       squared += 2 * strain * strain; /* 2 D:D */
     }
   }
-  properties_shear_rate(mesh, NULL, u, shear_f);
+  strain_shear_rate(mesh, NULL, u, shear_f);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       if (_i & 1) { /* across a periodic side the profile jumps */

@@ -4,6 +4,7 @@
 #include <check.h>
 
 #include "faces.h"
+#include "talus/strain.h"
 #include "talus/two_phase/properties.h"
 #include "talus/viscous.h"
 
@@ -89,7 +90,7 @@ static double largest_force(struct block *b, const struct skin *skin) {
 static double shear_error(struct block *b, const struct skin *skin,
                           double exact) {
   double most = 0;
-  properties_shear_rate(b->mesh, skin, b->u, b->shear_f);
+  strain_shear_rate(b->mesh, skin, b->u, b->shear_f);
   for (int32_t f = 0; f < b->mesh->nfaces; f++) {
     if (b->eta_f[f] > 0) most = larger(most, fabs(b->shear_f[f] - exact));
   }

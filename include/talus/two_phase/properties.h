@@ -18,10 +18,9 @@
  * less than half full would lie on a cushion of gas (docs/notes/surface.md).
  * Both parts of a line share the stress, each with a shear rate of its own.
  * eta_1 and eta_2 come from shear rate and pressure of the face itself:
- *   shear_rate = sqrt(2 D:D), normal derivatives from the two nodes, tangential
- *   ones the mean of central differences at both, one-sided beside the surface
- *   (skin.h); the pressure varies along the line as at rest, with slopes in
- *   proportion to the densities of the two halves; at a wall dp/dn = rho g_n.
+ *   shear_rate = sqrt(2 D:D) (strain.h); the pressure varies along the line as
+ * at rest, with slopes in proportion to the densities of the two halves; at a
+ * wall dp/dn = rho g_n.
  *
  * Gravity of a face: such that the pressure balances it where the surface lies,
  * not where the face does. With p = p' + W, W = rho g.(x - Z), gravity less the
@@ -68,11 +67,6 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f);
 
-/* Set shear_f [nfaces] to sqrt(2 D:D) on the faces of this rank; skin: of the
- * mesh, or NULL; u[e] filled. */
-void properties_shear_rate(const struct mesh *mesh, const struct skin *skin,
-                           double *const u[DIM], double *shear_f);
-
 /* Set eta_f [nfaces_all], Pa s, at a time, s. gas NULL: grains only. c, p
  * filled; normal, plane: the planes of cut leaves; shear_f as above; work: two
  * scratch arrays [nfaces]. Collective. */
@@ -83,5 +77,13 @@ void properties_viscosity(const struct mesh *mesh, double time,
                           const double *p, const bool *closed,
                           const double *shear_f, double *const work[2],
                           double *eta_f);
+
+/* Part of the line of each face that lies in grains, theta_f, and the pressure
+ * there, p_f, both [nfaces]; arguments as above. */
+void properties_pressure(const struct mesh *mesh, const double density[2],
+                         const double gravity[DIM], const double *c,
+                         double *const normal[DIM], const double *plane,
+                         const double *p, const bool *closed, double *theta_f,
+                         double *p_f);
 
 #endif

@@ -17,6 +17,7 @@
 #include "talus/solve.h"
 #include "talus/two_phase/conditions.h"
 #include "talus/two_phase/percolation.h"
+#include "talus/two_phase/yield.h"
 
 enum { TWO_PHASE_MAX_KNOWN = 8 };
 
@@ -62,7 +63,9 @@ struct two_phase {
   struct field *g[DIM]; /* gravity minus pressure gradient over density */
   struct field *viscous_g[DIM]; /* what viscosity added in the last step,
                                  * without the friction of side walls */
-  struct field *drag;           /* of side walls (side_walls.h); NULL: none */
+  bool exact; /* the grains yield exactly, else by their viscosity */
+  struct yield yield;
+  struct field *drag; /* of side walls (side_walls.h); NULL: none */
 
   /* Gas that leaves through the grains (percolation.h); NULL: none may */
   struct field *source;  /* of volume, 1/s: < 0 where gas is enclosed */

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rates of strain D = (grad u + grad u^T)/2 at faces: normal derivatives from
+ * the two nodes of a face, tangential ones the mean of central differences at
+ * both, one-sided beside the surface of the grains (skin.h). The stress of
+ * viscous.h is made of the same differences.
+ */
+#ifndef TALUS_STRAIN_H
+#define TALUS_STRAIN_H
+
+#include "talus/mesh.h"
+#include "talus/skin.h"
+
+/* Rows of a symmetric tensor without trace, T, at a face of axis d:
+ *   T[d] T_dd, T[e] T_de for the other axes e, and in 3D, t and w being the
+ *   axes after d in a circle, T[3] T_tt and T[4] T_tw; T_ww = -(T_dd + T_tt).
+ */
+enum { STRAIN_ROWS = DIM == 2 ? 2 : 5 };
+
+/* Give T:T/2 of the rows at face f of axis d. */
+static inline double strain_norm_squared(double *const rows[STRAIN_ROWS], int d,
+                                         int32_t f) {
+  double sum = 0;
+  for (int e = 0; e < DIM; e++) {
+    if (e != d) sum += rows[e][f] * rows[e][f];
+  }
+  if (DIM == 2) return sum + rows[d][f] * rows[d][f];
+  const double n = rows[d][f], t = rows[STRAIN_ROWS - 2][f];
+  const double tw = rows[STRAIN_ROWS - 1][f];
+  return sum + tw * tw + n * n + t * t + n * t;
+}
+
+/* shear_f [nfaces] = sqrt(2 D:D) on our own faces; skin: of the mesh, or NULL;
+ * u[e] filled. */
+void strain_shear_rate(const struct mesh *mesh, const struct skin *skin,
+                       double *const u[DIM], double *shear_f);
+/* rows [STRAIN_ROWS][nfaces_all]: D, 1/s. Collective. */
+void strain_find(const struct mesh *mesh, const struct skin *skin,
+                 double *const u[DIM], double *const rows[STRAIN_ROWS]);
+/* force[e] [nleaves] = (div s)_e, N/m^3, of a stress s [nfaces_all], Pa, whose
+ * first DIM rows are filled. */
+void strain_divergence(const struct mesh *mesh, double *const s[DIM],
+                       double *const force[DIM]);
+
+#endif

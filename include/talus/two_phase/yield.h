@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Exact yield: grains that come to rest and stay there.
+ *
+ * Their stress is 2 eta D + s with a yield stress s that is a field on faces,
+ *   |s| <= tau_y, and s = tau_y D/|D| where D does not vanish,  |T|^2 = T:T/2,
+ * which is the same as s = P(s + 2 r D) for any r > 0, P the projection on
+ * |s| <= tau_y. A step makes it so with one solve:
+ *   D* = D^n + dt/dt_last (D^n - D^{n-1}), bounded, where the last two changes
+ *        of D agree; else D^n
+ *   q  = s^n + 2 r D*,  m = min(1, tau_y/|q|)
+ *   rho u - dt div(2 (eta + m r) D(u)) = rho (u + dt g) + dt div(m s^n)
+ *   s^{n+1} = P(s^n + 2 r D(u))
+ * the method of multipliers [bermudez_moreno_1981] with one step of Picard's
+ * in it. Grains at rest have D = 0 whatever r is: r is no viscosity, only the
+ * stiffness r/dt of a spring that holds them while s builds up. It is
+ *   r = tau_y/gamma_r,  gamma_r = 1e-3 sqrt(g/H),  H = max p/(rho_1 g).
+ *
+ * Grains and gas act side by side on a face, of which the part a is wet (by the
+ * planes of its leaves):
+ *   eta = a eta_1 + (1 - a) eta_2,  tau_y = a (tau_y1(p_f) + cohesion).
+ * The face that carries a cut leaf bears at least the weight of its grains,
+ *   p_f >= c rho_1 |g_d| h/a.
+ *
+ * u_f, which carries c, is not that of the projection: it would leave dt (a_f -
+ * mean g_c), which does not vanish at rest. It is the solenoidal part of the
+ * mean of u^{n+1} on both sides.
+ */
+#ifndef TALUS_TWO_PHASE_YIELD_H
+#define TALUS_TWO_PHASE_YIELD_H
+
+#include <stdbool.h>
+
+#include "talus/field.h"
+#include "talus/strain.h"
+
+struct two_phase;
+
+struct yield {
+  struct field *s[STRAIN_ROWS]; /* yield stress, Pa; kept */
+  struct field *strain[STRAIN_ROWS], *trend[STRAIN_ROWS]; /* D, 1/s, and its
+                                  change, 1/s^2; kept */
+  struct field *tau_y;                                    /* of a step */
+  struct field *state; /* yield_state of snapshots, on demand */
+  double gamma_r;      /* 1/s */
+};
+
+/* Set eta_f, tau_y and gamma_r from the velocity, which is filled, and p. */
+void yield_update(struct two_phase *sim, double *const u[DIM]);
+/* Set the viscosity eta [nfaces_all] of a solve over dt and the force div(m
+ * s^n) that it needs besides, force[e] [nleaves]. Collective. */
+void yield_linearise(struct two_phase *sim, double dt, double *eta,
+                     double *const force[DIM]);
+/* Set state [nleaves] to the part of the sides of a leaf whose stress has
+ * reached the yield stress: 0 where grains are held, 1 where they flow, 0 in
+ * gas. Collective. */
+void yield_find_state(struct two_phase *sim, double *state);
+/* Take D of the solution u, which is filled, and the stress that goes with it.
+ * again: the step has had a solve before. Collective. */
+void yield_advance(struct two_phase *sim, double dt, double *const u[DIM],
+                   bool again);
+
+#endif

@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_phase/yield.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/minmax.h"
+#include "talus/plane.h"
+#include "talus/two_phase/properties.h"
+#include "talus/two_phase/state.h"
+#include "talus/two_phase/time_step.h"
+#include "talus/vof.h"
+
+/* Stress within this part of the yield stress has reached it. */
+#define REACHED 1e-6
+/* gamma_r in units of sqrt(g/H). */
+#define STIFF 1e-3
+/* D*.D^n and |D*| are at least and at most this, in |D^n|^2 and |D^n|. */
+#define LEAST 0.2
+#define MOST 3
+/* D is extrapolated where the cosine between two changes of it is above this:
+ * elsewhere it is carried past the face, and its change is noise. A change that
+ * is not extrapolated is kept this much smaller, for its direction. */
+#define AGREE 0.95
+#define FORGOTTEN 1e-3
+
+/* Give the part of a face of axis d that the plane of the leaf on `side` wets.
+ */
+static double wet_side(const struct two_phase *sim, int d, int32_t f,
+                       int side) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const int32_t leaf = mesh->face_leaf[f][side];
+  const int32_t node = mesh->face_node[f][side];
+  const double c = sim->c->v[leaf];
+  if (!vof_is_cut(c)) return c > 0.5;
+  double n[DIM], lo[DIM], hi[DIM], alpha = sim->plane->v[leaf], size = 0;
+  const bool coarse = node >= mesh->begin_virtual;
+  for (int e = 0; e < DIM; e++) {
+    n[e] = sim->normal[e]->v[leaf];
+    const bool upper = coarse && (node - mesh->begin_virtual) % NCHILD >> e & 1;
+    lo[e] = upper ? 0 : -0.5;
+    hi[e] = coarse && !upper ? 0 : 0.5;
+  }
+  alpha -= n[d] * (side ? -0.5 : 0.5);
+  n[d] = 0;
+  for (int e = 0; e < DIM; e++) size += fabs(n[e]);
+  if (size < 1e-12) return alpha > 0 ? 1 : alpha < 0 ? 0 : 0.5;
+  return plane_box_volume(n, alpha, lo, hi);
+}
+
+/* Set the wet part a [nfaces] of each face. */
+static void find_wet(const struct two_phase *sim, double *wet) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *leaf = mesh->face_leaf[f];
+      double part = 1;
+      for (int side = 0; side < 2; side++) {
+        if (leaf[side] >= 0) part = min2(part, wet_side(sim, d, f, side));
+      }
+      wet[f] = part;
+    }
+  }
+}
+
+/* Let the faces below cut leaves bear the weight of their grains. */
+static void bear_weight(const struct two_phase *sim, const double *wet,
+                        double *p_f) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct params *params = sim->params;
+  for (int d = 0; d < DIM; d++) {
+    const double g = params->gravity[d];
+    if (g == 0 || params->boundary[2 * d].type == BOUNDARY_PERIODIC) continue;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const double c = sim->c->v[i];
+      const int32_t f = mesh->cell_face[i][g < 0 ? 2 * d : 2 * d + 1];
+      if (!vof_is_cut(c) || f >= mesh->nfaces || !(wet[f] > 0)) continue;
+      const double weight =
+          c * params->grains.density * fabs(g) * mesh->h[i] / wet[f];
+      p_f[f] = max2(p_f[f], weight);
+    }
+  }
+}
+
+/* Find gamma_r; without gravity from the fastest flow instead. */
+static double find_gamma_r(const struct two_phase *sim) {
+  const struct params *params = sim->params;
+  const struct mesh *mesh = sim->grid.mesh;
+  double g2 = 0, stress = 0, speed = time_step_boundary_speed(sim, false);
+  for (int d = 0; d < DIM; d++) {
+    g2 += params->gravity[d] * params->gravity[d];
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      speed = max2(speed, fabs(sim->u[d]->v[i]));
+    }
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (sim->c->v[i] > 0.5) stress = max2(stress, sim->p->v[i]);
+  }
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    stress = max2(stress, sim->yield.tau_y->v[f]);
+  }
+  stress = mesh_max(mesh, stress);
+  if (g2 > 0 && stress > 0) { /* sqrt(g/H) */
+    return STIFF * sqrt(g2 * params->grains.density / stress);
+  }
+  speed = mesh_max(mesh, speed);
+  return STIFF * (speed > 0 ? speed / params->size : 1 / params->stop);
+}
+
+void yield_update(struct two_phase *sim, double *const u[DIM]) {
+  enum { BLOCK = 512 };
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct params *params = sim->params;
+  double density[2], *normal[DIM], *work[3], gas[BLOCK];
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 3, work);
+  double *shear = work[0], *wet = work[1], *p_f = work[2];
+  double *eta = sim->eta_f->v, *tau_y = sim->yield.tau_y->v;
+  two_phase_densities(sim, density);
+  field_arrays(sim->normal, normal);
+  strain_shear_rate(mesh, sim->skin, u, shear);
+  properties_pressure(mesh, density, params->gravity, sim->c->v, normal,
+                      sim->plane->v, sim->p->v, sim->grid.closed, wet, p_f);
+  find_wet(sim, wet);
+  bear_weight(sim, wet, p_f);
+  rheology_parts(&params->grains.rheology, sim->model.time, mesh->nfaces, shear,
+                 p_f, eta, tau_y);
+  for (int32_t begin = 0; begin < mesh->nfaces; begin += BLOCK) {
+    const int32_t n =
+        begin + BLOCK < mesh->nfaces ? BLOCK : mesh->nfaces - begin;
+    if (params->single_phase) break;
+    rheology_eval(&params->gas.rheology, sim->model.time, n, shear + begin,
+                  p_f + begin, gas);
+    for (int32_t f = begin; f < begin + n; f++) {
+      eta[f] = wet[f] * eta[f] + (1 - wet[f]) * gas[f - begin];
+      tau_y[f] *= wet[f];
+    }
+  }
+  scratch_give(&sim->scratch, __func__);
+  mesh_fill_faces(mesh, 1, &eta);
+  sim->yield.gamma_r = find_gamma_r(sim);
+}
+
+/* Set `guess` to D* at face f, over dt. */
+static void extrapolate(const struct yield *yield, int32_t f, double dt,
+                        double guess[STRAIN_ROWS]) {
+  double now[STRAIN_ROWS], product = 0, size = 0, most = 0;
+  for (int k = 0; k < STRAIN_ROWS; k++) {
+    now[k] = yield->strain[k]->v[f];
+    guess[k] = now[k] + dt * yield->trend[k]->v[f];
+    product += guess[k] * now[k];
+    size += now[k] * now[k];
+    most += guess[k] * guess[k];
+  }
+  const bool turns = product<LEAST * size, leaps = most> MOST * MOST * size;
+  for (int k = 0; k < STRAIN_ROWS && (turns || leaps); k++) {
+    guess[k] = turns ? LEAST * now[k] : now[k];
+  }
+}
+
+/* Project q on |q| <= tau_y; returns the factor that does it. */
+static double project(double q[STRAIN_ROWS], int d, double tau_y) {
+  double *rows[STRAIN_ROWS];
+  for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &q[k];
+  const double size = sqrt(strain_norm_squared(rows, d, 0));
+  const double m = size > tau_y ? tau_y / size : 1;
+  for (int k = 0; k < STRAIN_ROWS; k++) q[k] *= m;
+  return m;
+}
+
+void yield_linearise(struct two_phase *sim, double dt, double *eta,
+                     double *const force[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct yield *yield = &sim->yield;
+  double *stress[DIM];
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, DIM, stress);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const double tau_y = yield->tau_y->v[f], r = tau_y / yield->gamma_r;
+      double q[STRAIN_ROWS];
+      extrapolate(yield, f, dt, q);
+      for (int k = 0; k < STRAIN_ROWS; k++) {
+        q[k] = yield->s[k]->v[f] + 2 * r * q[k];
+      }
+      const double m = project(q, d, tau_y);
+      eta[f] = sim->eta_f->v[f] + m * r;
+      for (int e = 0; e < DIM; e++) stress[e][f] = m * yield->s[e]->v[f];
+    }
+  }
+  mesh_fill_faces(mesh, 1, &eta);
+  mesh_fill_faces(mesh, DIM, stress);
+  strain_divergence(mesh, stress, force);
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Renew the trend of D at face f, which is now `strain` after dt. */
+static void renew_trend(const struct yield *yield, int32_t f, double dt,
+                        const double strain[STRAIN_ROWS]) {
+  double change[STRAIN_ROWS], product = 0, size = 0, last = 0;
+  for (int k = 0; k < STRAIN_ROWS; k++) {
+    const double before = yield->trend[k]->v[f];
+    change[k] = (strain[k] - yield->strain[k]->v[f]) / dt;
+    product += change[k] * before;
+    size += change[k] * change[k], last += before * before;
+  }
+  const bool agree = product > AGREE * sqrt(size * last);
+  for (int k = 0; k < STRAIN_ROWS; k++) {
+    yield->trend[k]->v[f] = change[k] * (agree ? 1 : FORGOTTEN);
+  }
+}
+
+void yield_advance(struct two_phase *sim, double dt, double *const u[DIM],
+                   bool again) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct yield *yield = &sim->yield;
+  double *rows[STRAIN_ROWS];
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, STRAIN_ROWS, rows);
+  strain_find(mesh, sim->skin, u, rows);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const double tau_y = yield->tau_y->v[f], r = tau_y / yield->gamma_r;
+      double strain[STRAIN_ROWS], q[STRAIN_ROWS];
+      for (int k = 0; k < STRAIN_ROWS; k++) {
+        strain[k] = rows[k][f];
+        q[k] = yield->s[k]->v[f] + 2 * r * strain[k];
+      }
+      if (!again) renew_trend(yield, f, dt, strain);
+      project(q, d, tau_y);
+      for (int k = 0; k < STRAIN_ROWS; k++) {
+        yield->strain[k]->v[f] = strain[k], yield->s[k]->v[f] = q[k];
+      }
+    }
+  }
+  scratch_give(&sim->scratch, __func__);
+}
+
+void yield_find_state(struct two_phase *sim, double *state) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct yield *yield = &sim->yield;
+  double *rows[STRAIN_ROWS];
+  double *flows = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = yield->s[k]->v;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const double least = (1 - REACHED) * yield->tau_y->v[f];
+      flows[f] = strain_norm_squared(rows, d, f) >= least * least;
+    }
+  }
+  mesh_fill_faces(mesh, 1, &flows);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    state[i] = sim->c->v[i] < 0.5 ? 0 : mesh_mean(mesh, flows, i);
+  }
+  scratch_give(&sim->scratch, __func__);
+}

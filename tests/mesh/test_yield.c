@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_phase/yield.h"
+
+#include <check.h>
+#include <math.h>
+
+#include "sim.h"
+#include "talus/strain.h"
+
+Suite *yield_suite(void);
+
+enum { ALONG = 0, UP = DIM - 1 };
+
+static struct rheology exact_closure(const char *name) {
+  struct rheology r;
+  rheology_init(&r, rheology_find(name));
+  rheology_set_regularisation(&r, "exact");
+  return r;
+}
+
+static double linear(void *context, const double x[3]) {
+  (void)context;
+  return x[UP];
+}
+
+/* Describe a layer of depth 1 in 32 cells on a slope, periodic along it. */
+static struct params layer_params(struct rheology grains, double degrees) {
+  const double slope = degrees * acos(-1) / 180;
+  struct params p = periodic_params(1);
+  p.size = 1. / 16;
+  p.trees[UP] = 16;
+  p.grains.rheology = grains;
+  p.boundary[2 * UP].type = BOUNDARY_NO_SLIP;
+  p.boundary[2 * UP + 1].type = BOUNDARY_OUTFLOW;
+  p.gravity[ALONG] = sin(slope), p.gravity[UP] = -cos(slope);
+  p.tolerance_pressure = p.tolerance_viscous = 1e-12;
+  p.dt_max = 0.02;
+  return p;
+}
+
+static double fastest(const struct two_phase *sim, double least) {
+  double most = 0;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    for (int d = 0; d < DIM && sim->c->v[i] > least; d++) {
+      most = larger(most, fabs(sim->u[d]->v[i]));
+    }
+  }
+  return mesh_max(sim->grid.mesh, most);
+}
+
+static bool run_to(struct two_phase *sim, double time) {
+  bool done = true;
+  while (done && sim->model.time < time - 1e-9)
+    done = step_advance(sim, time - sim->model.time) == EXIT_DONE;
+  return done;
+}
+
+/* A Coulomb layer that starts with u = y slows down as u = y - k t where it
+ * moves, k = g cos(a) (mu_s - tan(a)) = 0.200579, and its top cell stops at
+ * t = 4.9077. */
+START_TEST(a_layer_stops_when_it_should) {
+  const double dt[] = {0.02, 0.01}, late[] = {1.04, 1.025};
+  struct rheology grains = exact_closure("coulomb");
+  rheology_set(&grains, "mu_s", 0.38);
+  struct params p = layer_params(grains, 10);
+  p.velocity[ALONG] = (struct function){linear, NULL};
+  p.dt_max = dt[_i];
+  struct two_phase *sim = sim_start(&p);
+  bool done = run_to(sim, 2);
+  const double moving = fastest(sim, 0.5);
+  while (done && fastest(sim, 0.5) > 1e-9 && sim->model.time < 8)
+    done = step_advance(sim, 1) == EXIT_DONE;
+  const double stop = sim->model.time;
+  done = done && run_to(sim, stop + 1);
+  const double rest = fastest(sim, 0.5);
+  two_phase_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_eq_tol(moving, 63. / 64 - 2 * 0.200579, 0.2 * dt[_i]);
+  ck_assert_double_gt(stop, 4.9077);
+  ck_assert_double_lt(stop, late[_i] * 4.9077);
+  ck_assert_double_lt(rest, 1e-15);
+}
+END_TEST
+
+/* mu_s = 0.38 is the tangent of 20.807 degrees. */
+START_TEST(a_layer_rests_up_to_its_angle_of_repose) {
+  struct rheology grains = exact_closure("mu_i");
+  rheology_set(&grains, "mu_s", 0.38);
+  rheology_set(&grains, "d", 0.04);
+  rheology_set(&grains, "rho", 1);
+  const struct params p = layer_params(grains, _i ? 20.81 : 20.80);
+  struct two_phase *sim = sim_start(&p);
+  const bool done = run_to(sim, 10);
+  const double speed = fastest(sim, 0.5);
+  two_phase_destroy(sim);
+  ck_assert(done);
+  if (_i)
+    ck_assert_double_gt(speed, 1e-4);
+  else
+    ck_assert_double_lt(speed, 1e-12);
+}
+END_TEST
+
+/* Return the level set of a heap with a slope of 0.176 along x. */
+static double heap(void *context, const double x[3]) {
+  (void)context;
+  return 0.3 - 0.176 * x[0] - x[UP];
+}
+
+/* The heap is at half its angle of repose; gas may go on. */
+START_TEST(a_heap_rests_under_gas) {
+  struct params p = box_params(DIM == 2 ? 5 : 4);
+  p.size = 2;
+  p.shape = (struct function){heap, NULL};
+  p.grains.rheology = exact_closure("mu_i");
+  rheology_set(&p.grains.rheology, "mu_s", 0.38);
+  rheology_set(&p.grains.rheology, "d", 0.04);
+  rheology_set(&p.grains.rheology, "rho", 1);
+  p.boundary[1].type = p.boundary[2 * UP].type = BOUNDARY_NO_SLIP;
+  p.boundary[2 * UP + 1].type = BOUNDARY_OUTFLOW;
+  p.tolerance_pressure = p.tolerance_viscous = 1e-12;
+  p.dt_max = 1. / 32;
+  if (_i) params_follow_surface(&p, p.level_max - 2, 3);
+  struct two_phase *sim = sim_start(&p);
+  const bool done = run_to(sim, 10);
+  const double speed = fastest(sim, 0.01);
+  double moved = 0;
+  for (int32_t f = 0; f < sim->grid.mesh->nfaces; f++) {
+    const int32_t *leaf = sim->grid.mesh->face_leaf[f];
+    bool grains = true;
+    for (int side = 0; side < 2; side++)
+      grains = grains && leaf[side] >= 0 && sim->c->v[leaf[side]] > 0.01;
+    if (grains) moved = larger(moved, fabs(sim->u_f->v[f]));
+  }
+  moved = mesh_max(sim->grid.mesh, moved);
+  two_phase_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_lt(speed, 1e-7);
+  ck_assert_double_lt(moved, 1e-7); /* nor do the faces that carry c */
+}
+END_TEST
+
+/* u_e = sum_t (e + 2 t + 1) x_t. */
+static double plane_flow(int e, const double x[3]) {
+  double u = 0;
+  for (int t = 0; t < DIM; t++) u += (e + 2 * t + 1) * x[t];
+  return u;
+}
+
+START_TEST(strain_of_a_linear_flow_is_exact) {
+  struct params p = box_params(3);
+  struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  double *u[DIM], *rows[STRAIN_ROWS], worst = 0;
+  for (int e = 0; e < DIM; e++) u[e] = sim->u[e]->v;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double x[3] = {0};
+    for (int d = 0; d < DIM; d++) x[d] = mesh->x[i][d];
+    for (int e = 0; e < DIM; e++) u[e][i] = plane_flow(e, x);
+  }
+  field_fill_many(mesh, DIM, sim->u);
+  for (int k = 0; k < STRAIN_ROWS; k++)
+    rows[k] = MEM_NEW(double, mesh->nfaces_all);
+  strain_find(mesh, NULL, u, rows);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      bool inner = mesh->face_patch[f] < 0;
+      for (int k = 0; k < NSTENCIL; k++) {
+        const int32_t node = mesh->stencil[mesh->face_owner[f]][k];
+        inner = inner && node < mesh->begin_boundary;
+      }
+      for (int e = 0; e < DIM && inner; e++) {
+        const double want = 0.5 * ((e + 2 * d + 1) + (d + 2 * e + 1));
+        worst = larger(worst, fabs(rows[e][f] - want));
+      }
+    }
+  }
+  worst = mesh_max(mesh, worst);
+  for (int k = 0; k < STRAIN_ROWS; k++) mem_free(rows[k]);
+  two_phase_destroy(sim);
+  ck_assert_double_lt(worst, 1e-11);
+}
+END_TEST
+
+/* T:T/2 of T = [[1, 3, 4], [3, 2, 5], [4, 5, -3]] and of [[1, 3], [3, -1]]. */
+START_TEST(the_norm_counts_all_of_the_tensor) {
+  double value[5] = {1, 3, 4, 2, 5}, *rows[STRAIN_ROWS];
+  for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &value[k];
+  const double want = DIM == 2 ? 1 + 9 : 0.5 * (1 + 4 + 9) + 9 + 16 + 25;
+  ck_assert_double_eq_tol(strain_norm_squared(rows, 0, 0), want, 1e-14);
+}
+END_TEST
+
+Suite *yield_suite(void) {
+  Suite *suite = suite_create("yield");
+  TCase *tcase = tcase_create("rest");
+  tcase_add_loop_test(tcase, a_layer_stops_when_it_should, 0, 2);
+  tcase_add_loop_test(tcase, a_layer_rests_up_to_its_angle_of_repose, 0, 2);
+  tcase_add_loop_test(tcase, a_heap_rests_under_gas, 0, 2);
+  suite_add_tcase(suite, tcase);
+  tcase = tcase_create("strain");
+  tcase_add_test(tcase, strain_of_a_linear_flow_is_exact);
+  tcase_add_test(tcase, the_norm_counts_all_of_the_tensor);
+  suite_add_tcase(suite, tcase);
+  return suite;
+}
