@@ -164,6 +164,18 @@ START_TEST(the_front_of_a_wedge_on_the_wall_is_interpolated) {
 }
 END_TEST
 
+/* Columns of width 1 and heights 3, 2, 1, 0: half way from the third to the
+ * fourth it is 1/2, at x = 3. In 3D all along y, as a slice of a plane heap. */
+START_TEST(the_front_of_columns_done_by_hand) {
+  enum { NX = 6, NY = DIM == 2 ? 1 : 4 };
+  double height[NY * NX];
+  struct outline outline = {
+      .n = {NX, NY}, .first = {0.5, 0.5}, .spacing = 1, .height = height};
+  for (int k = 0; k < NY * NX; k++) height[k] = fmax(3 - k % NX, 0);
+  ck_assert_double_eq_tol(outline_front(&outline), 3, 1e-14);
+}
+END_TEST
+
 START_TEST(a_heap_in_the_middle_has_the_front_of_its_longer_side) {
   const double delta = 1.0 / 32;
   if (DIM == 2) { /* the upper end, as both are level */
@@ -411,6 +423,7 @@ Suite *diagnostics_suite(void) {
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("outline");
   tcase_add_test(tcase, the_front_of_a_wedge_on_the_wall_is_interpolated);
+  tcase_add_test(tcase, the_front_of_columns_done_by_hand);
   tcase_add_test(tcase, a_heap_in_the_middle_has_the_front_of_its_longer_side);
   tcase_add_test(tcase, a_heap_on_the_upper_wall_is_walked_downwards);
   tcase_add_loop_test(tcase, a_layer_thinner_than_a_cell_has_a_front, 0, 2);
