@@ -12,9 +12,9 @@
 #include "talus/params.h"
 
 enum {
-  MOST_CELLS = 600,    /* of a level that are looked at */
-  EVALUATIONS = 12000, /* of a function on a level, about */
-  LEAST_SAMPLES = 4,   /* along an edge */
+  MOST_CELLS = 600,                      /* of a level that are looked at */
+  EVALUATIONS = DIM == 2 ? 8000 : 12000, /* of a function on a level, about */
+  LEAST_SAMPLES = 4,                     /* along an edge */
   MOST_SAMPLES = 65
 };
 
