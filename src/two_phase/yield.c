@@ -21,7 +21,7 @@
 /* D is extrapolated where the cosine between two changes of it is above this:
  * elsewhere it is carried past the face, and its change is noise. A change that
  * is not extrapolated is kept this much smaller, for its direction. */
-#define AGREE 0.95
+#define AGREE 0.99
 #define FORGOTTEN 1e-3
 
 /* Give the part of a face of axis d that the plane of the leaf on `side` wets.
