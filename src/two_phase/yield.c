@@ -70,14 +70,13 @@ static void bear_weight(const struct two_phase *sim, const double *wet,
   const struct params *params = sim->params;
   for (int d = 0; d < DIM; d++) {
     const double g = params->gravity[d];
-    if (g == 0 || params->boundary[2 * d].type == BOUNDARY_PERIODIC) continue;
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      const double c = sim->c->v[i];
-      const int32_t f = mesh->cell_face[i][g < 0 ? 2 * d : 2 * d + 1];
-      if (!vof_is_cut(c) || f >= mesh->nfaces || !(wet[f] > 0)) continue;
-      const double weight =
-          c * params->grains.density * fabs(g) * mesh->h[i] / wet[f];
-      p_f[f] = max2(p_f[f], weight);
+    const double weight = params->grains.density * fabs(g);
+    if (params->boundary[2 * d].type == BOUNDARY_PERIODIC) continue;
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t above = mesh->face_leaf[f][g < 0];
+      if (above < 0 || !vof_is_cut(sim->c->v[above]) || wet[f] == 0) continue;
+      p_f[f] =
+          max2(p_f[f], weight * sim->c->v[above] * mesh->h[above] / wet[f]);
     }
   }
 }

@@ -6,14 +6,15 @@
  * which is the same as s = P(s + 2 r D) for any r > 0, P the projection on
  * |s| <= tau_y. A step makes it so with one solve:
  *   D* = D^n + dt/dt_last (D^n - D^{n-1}), bounded, where the last two changes
- *        of D agree; else D^n
+ *        of D have the same direction; else D^n
  *   q  = s^n + 2 r D*,  m = min(1, tau_y/|q|)
  *   rho u - dt div(2 (eta + m r) D(u)) = rho (u + dt g) + dt div(m s^n)
  *   s^{n+1} = P(s^n + 2 r D(u))
  * the method of multipliers [bermudez_moreno_1981] with one step of Picard's
  * in it. Grains at rest have D = 0 whatever r is: r is no viscosity, only the
  * stiffness r/dt of a spring that holds them while s builds up. It is
- *   r = tau_y/gamma_r,  gamma_r = 1e-3 sqrt(g/H),  H = max p/(rho_1 g).
+ *   r = tau_y/gamma_r,  gamma_r = 1e-3 sqrt(g/H),  H = S/(rho_1 g),
+ * S the largest pressure or yield stress of the grains.
  *
  * Grains and gas act side by side on a face, of which the part a is wet (by the
  * planes of its leaves):
