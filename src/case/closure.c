@@ -7,7 +7,7 @@
 #include "case_file.h"
 #include "talus/rheology.h"
 
-enum { REGULARISATIONS = 3 };
+enum { REGULARISATIONS = 4 };
 
 static const struct rheology_model *read_model(struct case_file *file,
                                                const struct key *key) {
@@ -176,6 +176,13 @@ void closure_read(struct case_file *file, const struct key *key) {
                  "%s: regularisation = \"exact\" is for the grains; take "
                  "\"clip\" for the gas",
                  key->path);
+  if (phase->rheology.regularisation == RHEOLOGY_EXACT &&
+      !rheology_yields(&phase->rheology))
+    read_fail_at(file, key->path,
+                 "%s: regularisation = \"exact\" needs a yield stress, and %s "
+                 "has none of its own: take \"clip\", another closure, or give "
+                 "cohesion",
+                 key->path, model->name);
   if (phase->rheology.eta_min > phase->rheology.eta_max)
     read_fail_at(file, key->path, "%s: eta_min = %g is above eta_max = %g",
                  key->path, phase->rheology.eta_min, phase->rheology.eta_max);

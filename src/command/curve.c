@@ -95,7 +95,7 @@ static void set_key(struct rheology *rheology, const char *word,
           word);
   } else if (strcmp(name, "regularisation") == 0) {
     if (rheology_set_regularisation(rheology, value) != 0)
-      USER_ERROR("%s: clip, papanastasiou or bercovier_engelman", word);
+      USER_ERROR("%s: clip, papanastasiou, bercovier_engelman or exact", word);
   } else {
     int why = rheology_set(rheology, name, read_value(word, value));
     if (why != 0) refuse_key(rheology, word, why);

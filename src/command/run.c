@@ -375,13 +375,14 @@ static void say_end(const struct run *run, const char *why) {
 static void say_failure(const struct run *run) {
   if (base_rank() != 0) return;
   char line[1024];
-  snprintf(line, sizeof line,
-           "the run gave up after step %" PRId64
-           ", time %.6g: a solve failed or the fields are no longer finite, "
-           "with smaller steps too (run.log says which); the state before "
-           "that is in %s, --restart goes on from it: try a larger tolerance, "
-           "more solver.max_iterations or a smaller eta_max",
-           run->model->step, run->model->time, run->checkpoint_path);
+  snprintf(
+      line, sizeof line,
+      "the run gave up after step %" PRId64
+      ", time %.6g: a solve failed or the fields are no longer finite, "
+      "with smaller steps too (run.log says which); the state before "
+      "that is in %s, --restart goes on from it: try a larger tolerance, "
+      "more solver.max_iterations or, where there is one, a smaller eta_max",
+      run->model->step, run->model->time, run->checkpoint_path);
   fprintf(stderr, "talus: error: %s\n", line);
   log_info("error: %s", line);
 }

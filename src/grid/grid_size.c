@@ -259,8 +259,11 @@ double grid_size_leaves(const struct params *params) {
 double grid_size_bytes(const struct params *params) {
   /* --timing of columns on uniform and adapted grids of 3e4 to 6e5 leaves, on 1
    * and 2 ranks: 920 to 1170 in 2D, 1350 to 1500 in 3D, 15 more for a tracer,
-   * 20 in 2D and 70 in 3D for theta < 1 */
-  const double tracers = 16 * params->ntracers;
-  if (DIM == 2) return 1100 + tracers + (params->theta < 1 ? 24 : 0);
-  return 1600 + tracers + (params->theta < 1 ? 72 : 0);
+   * 20 in 2D and 70 in 3D for theta < 1, 220 and 890 for an exact yield */
+  const struct rheology *grains = &params->grains.rheology;
+  const bool exact = grains->model && grains->regularisation == RHEOLOGY_EXACT;
+  double bytes = (DIM == 2 ? 1100 : 1600) + 16 * params->ntracers;
+  if (params->theta < 1) bytes += DIM == 2 ? 24 : 72;
+  if (exact) bytes += DIM == 2 ? 250 : 950;
+  return bytes;
 }

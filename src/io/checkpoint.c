@@ -361,7 +361,7 @@ static void read_field(struct checkpoint *checkpoint, const struct mesh *mesh,
       columns != wanted || all != forest_nleaves_global(mesh->forest))
     USER_ERROR(
         "'%s' has no values of %s (%s) for this case; --restart needs the "
-        "phases and tracers of the first run",
+        "phases, tracers and regularisation of the first run",
         checkpoint->path, field->name, field->title);
   if (field->location == FIELD_CELL) {
     hdf5_read(checkpoint->file, path, HDF5_REAL, first, mesh->nleaves, 1,

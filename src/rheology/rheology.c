@@ -145,9 +145,11 @@ void rheology_parts(const struct rheology *r, double time, int32_t n,
     else
       r->user(r->context, time, m, gamma, p, eta + begin);
     yield_stress(r, m, gamma, p, tau_y + begin);
-    for (int32_t i = begin; i < begin + m; i++)
-      eta[i] = at_least(
-          eta[i], r->eta_min - tau_y[i] / at_least(shear_rate[i], DBL_MIN));
+    for (int32_t i = begin; i < begin + m; i++) {
+      if (r->eta_min * shear_rate[i] < tau_y[i]) continue;
+      const double yield = tau_y[i] > 0 ? tau_y[i] / shear_rate[i] : 0;
+      eta[i] = at_least(eta[i], r->eta_min - yield);
+    }
   }
 }
 

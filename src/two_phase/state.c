@@ -127,8 +127,8 @@ static void add_yield(struct two_phase *sim) {
     yield->strain[k] = add_kept_face(sim, strain[k], "1/s", "rate of strain");
     yield->trend[k] = add_kept_face(sim, trend[k], "1/s^2", "its change");
   }
-  yield->tau_y = fields_add(&sim->grid.fields, sim->grid.mesh, "yield_stress",
-                            "Pa", "", FIELD_FACE, NULL);
+  yield->tau_y =
+      add_kept_face(sim, "yield_stress", "Pa", "bound of the yield stress");
 }
 
 static void add_state(struct two_phase *sim) {

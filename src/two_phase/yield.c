@@ -13,8 +13,11 @@
 
 /* Stress within this part of the yield stress has reached it. */
 #define REACHED 1e-6
-/* gamma_r in units of sqrt(g/H). */
-#define STIFF 1e-3
+/* gamma_r in units of the rate of the flow. */
+#define STIFF 5e-4
+/* Closures that thin are asked for no shear rate below this part of the rate of
+ * the flow, as their plastic viscosity has no bound. */
+#define LEAST_RATE 1e-6
 /* D*.D^n and |D*| are at least and at most this, in |D^n|^2 and |D^n|. */
 #define LEAST 0.2
 #define MOST 3
@@ -81,29 +84,34 @@ static void bear_weight(const struct two_phase *sim, const double *wet,
   }
 }
 
-/* Find gamma_r; without gravity from the fastest flow instead. */
-static double find_gamma_r(const struct two_phase *sim) {
+/* Find a rate of the flow from gravity, with `stress` a weight per area or 0
+ * for that of a tree, and from the fastest flow over the domain: the larger
+ * one. */
+static double find_rate(const struct two_phase *sim, double stress) {
   const struct params *params = sim->params;
   const struct mesh *mesh = sim->grid.mesh;
-  double g2 = 0, stress = 0, speed = time_step_boundary_speed(sim, false);
+  double g2 = 0, length = 0, speed = time_step_boundary_speed(sim, false);
   for (int d = 0; d < DIM; d++) {
     g2 += params->gravity[d] * params->gravity[d];
+    length = max2(length, params->size * params->trees[d]);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       speed = max2(speed, fabs(sim->u[d]->v[i]));
     }
   }
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    if (sim->c->v[i] > 0.5) stress = max2(stress, sim->p->v[i]);
+  const double flow = mesh_max(mesh, speed) / length;
+  const double height = stress / params->grains.density; /* times g */
+  const double fall =
+      sqrt(stress > 0 && g2 > 0 ? g2 / height : sqrt(g2) / length);
+  const double rate = max2(fall, flow);
+  return rate > 0 ? rate : 1 / params->stop;
+}
+
+static double largest_yield_stress(const struct two_phase *sim) {
+  double most = 0;
+  for (int32_t f = 0; f < sim->grid.mesh->nfaces; f++) {
+    most = max2(most, sim->yield.tau_y->v[f]);
   }
-  for (int32_t f = 0; f < mesh->nfaces; f++) {
-    stress = max2(stress, sim->yield.tau_y->v[f]);
-  }
-  stress = mesh_max(mesh, stress);
-  if (g2 > 0 && stress > 0) { /* sqrt(g/H) */
-    return STIFF * sqrt(g2 * params->grains.density / stress);
-  }
-  speed = mesh_max(mesh, speed);
-  return STIFF * (speed > 0 ? speed / params->size : 1 / params->stop);
+  return mesh_max(sim->grid.mesh, most);
 }
 
 void yield_update(struct two_phase *sim, double *const u[DIM]) {
@@ -121,6 +129,8 @@ void yield_update(struct two_phase *sim, double *const u[DIM]) {
                       sim->plane->v, sim->p->v, sim->grid.closed, wet, p_f);
   find_wet(sim, wet);
   bear_weight(sim, wet, p_f);
+  const double least = LEAST_RATE * find_rate(sim, 0);
+  for (int32_t f = 0; f < mesh->nfaces; f++) shear[f] = max2(shear[f], least);
   rheology_parts(&params->grains.rheology, sim->model.time, mesh->nfaces, shear,
                  p_f, eta, tau_y);
   for (int32_t begin = 0; begin < mesh->nfaces; begin += BLOCK) {
@@ -136,7 +146,7 @@ void yield_update(struct two_phase *sim, double *const u[DIM]) {
   }
   scratch_give(&sim->scratch, __func__);
   mesh_fill_faces(mesh, 1, &eta);
-  sim->yield.gamma_r = find_gamma_r(sim);
+  sim->yield.gamma_r = STIFF * find_rate(sim, largest_yield_stress(sim));
 }
 
 /* Set `guess` to D* at face f, over dt. */
@@ -241,7 +251,7 @@ void yield_find_state(struct two_phase *sim, double *state) {
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const double least = (1 - REACHED) * yield->tau_y->v[f];
-      flows[f] = strain_norm_squared(rows, d, f) >= least * least;
+      flows[f] = least > 0 && strain_norm_squared(rows, d, f) >= least * least;
     }
   }
   mesh_fill_faces(mesh, 1, &flows);

@@ -140,6 +140,44 @@ START_TEST(a_heap_rests_under_gas) {
 }
 END_TEST
 
+/* Closures that thin have no bound on their plastic viscosity at rest, and the
+ * largest yield stress there is must not overflow. */
+START_TEST(closures_that_thin_start_from_rest) {
+  struct rheology grains = exact_closure("herschel_bulkley");
+  rheology_set(&grains, "tau_y", 1e3);
+  rheology_set(&grains, "K", 1);
+  rheology_set(&grains, "n", 0.3);
+  const struct params p = layer_params(grains, 10);
+  struct two_phase *sim = sim_start(&p);
+  const bool done = run_to(sim, 0.2);
+  const double speed = fastest(sim, 0.5);
+  two_phase_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_lt(speed, 1e-3);
+}
+END_TEST
+
+/* Gravity that hardly acts sets no scale of its own: a stress-free box turns as
+ * if there was none. */
+START_TEST(the_stiffness_follows_the_faster_of_fall_and_flow) {
+  struct rheology grains = exact_closure("bingham");
+  rheology_set(&grains, "tau_y", 0.1);
+  rheology_set(&grains, "eta_0", 0.1);
+  struct params p = layer_params(grains, 10);
+  p.velocity[ALONG] = (struct function){linear, NULL};
+  double gamma_r[2];
+  for (int k = 0; k < 2; k++) {
+    for (int d = 0; d < DIM; d++) p.gravity[d] *= k == 0 ? 0 : 1e-9;
+    if (k == 1) p.gravity[UP] = -1e-9;
+    struct two_phase *sim = sim_start(&p);
+    step_advance(sim, 0.01);
+    gamma_r[k] = sim->yield.gamma_r;
+    two_phase_destroy(sim);
+  }
+  ck_assert_double_eq_tol(gamma_r[1], gamma_r[0], 1e-9 * gamma_r[0]);
+}
+END_TEST
+
 /* u_e = sum_t (e + 2 t + 1) x_t. */
 static double plane_flow(int e, const double x[3]) {
   double u = 0;
@@ -197,6 +235,8 @@ Suite *yield_suite(void) {
   tcase_add_loop_test(tcase, a_layer_stops_when_it_should, 0, 2);
   tcase_add_loop_test(tcase, a_layer_rests_up_to_its_angle_of_repose, 0, 2);
   tcase_add_loop_test(tcase, a_heap_rests_under_gas, 0, 2);
+  tcase_add_test(tcase, closures_that_thin_start_from_rest);
+  tcase_add_test(tcase, the_stiffness_follows_the_faster_of_fall_and_flow);
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("strain");
   tcase_add_test(tcase, strain_of_a_linear_flow_is_exact);

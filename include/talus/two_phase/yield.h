@@ -13,8 +13,8 @@
  * the method of multipliers [bermudez_moreno_1981] with one step of Picard's
  * in it. Grains at rest have D = 0 whatever r is: r is no viscosity, only the
  * stiffness r/dt of a spring that holds them while s builds up. It is
- *   r = tau_y/gamma_r,  gamma_r = 1e-3 sqrt(g/H),  H = S/(rho_1 g),
- * S the largest pressure or yield stress of the grains.
+ *   r = tau_y/gamma_r,  gamma_r = 5e-4 max(sqrt(g/H), U/L),
+ * H = max tau_y/(rho_1 g), U the largest speed and L the length of the domain.
  *
  * Grains and gas act side by side on a face, of which the part a is wet (by the
  * planes of its leaves):
@@ -40,7 +40,7 @@ struct yield {
   struct field *s[STRAIN_ROWS]; /* yield stress, Pa; kept */
   struct field *strain[STRAIN_ROWS], *trend[STRAIN_ROWS]; /* D, 1/s, and its
                                   change, 1/s^2; kept */
-  struct field *tau_y;                                    /* of a step */
+  struct field *tau_y;                                    /* Pa; kept */
   struct field *state; /* yield_state of snapshots, on demand */
   double gamma_r;      /* 1/s */
 };
