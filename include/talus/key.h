@@ -66,6 +66,9 @@ struct model_keys {
    * are members of struct params. Only types up to KEY_CHOICE are allowed in a
    * struct of its own. */
   size_t own_size;
+  /* Paths of shared keys that mean nothing to the model and are refused; NULL
+   * at the end. NULL: it takes all. */
+  const char *const *refused;
 };
 
 /* Return the keys of model k of src/models.c; NULL past the last. */

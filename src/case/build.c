@@ -43,6 +43,7 @@ static void check_section(struct case_file *file, const char *section) {
   int n = 0;
   for (int i = 0; (key = keys_get(model_of(file), i)) != NULL; i++) {
     const char *inner = key->path;
+    if (!keys_takes(model_of(file), inner)) continue;
     if (length > 0) {
       if (strncmp(inner, section, length) != 0 || inner[length] != '.')
         continue;
@@ -249,6 +250,7 @@ void build_params(struct case_file *file) {
   lua_pop(L, 1);
   for (int i = 0; (key = keys_get(model_of(file), i)) != NULL; i++) {
     if (is_absent(file, key) || strcmp(key->path, "model") == 0) continue;
+    if (!keys_takes(model_of(file), key->path)) continue;
     push_path(file, key->path);
     if (key->type == KEY_SECTION)
       read_section(file, key);

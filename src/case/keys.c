@@ -202,8 +202,18 @@ const struct key *keys_get(const struct model_keys *model, int i) {
   return GET(KEYS, i - model->nkeys + 1);
 }
 
+bool keys_takes(const struct model_keys *model, const char *path) {
+  for (int k = 0; model->refused != NULL && model->refused[k] != NULL; k++) {
+    const size_t n = strlen(model->refused[k]);
+    const bool same = strncmp(path, model->refused[k], n) == 0;
+    if (same && (path[n] == '\0' || path[n] == '.')) return false;
+  }
+  return true;
+}
+
 const struct key *keys_find(const struct model_keys *model, const char *path) {
   const struct key *key;
+  if (!keys_takes(model, path)) return NULL;
   for (int i = 0; (key = keys_get(model, i)) != NULL; i++)
     if (strcmp(key->path, path) == 0) return key;
   return NULL;

@@ -13,6 +13,8 @@
 /* Return key i of a case of this model, NULL past the last. Sections come
  * before what is in them, and what others depend on comes first. */
 const struct key *keys_get(const struct model_keys *model, int i);
+/* Does the model take a key of this path, if it is known? */
+bool keys_takes(const struct model_keys *model, const char *path);
 /* Find the key of this path; NULL: the model has none. */
 const struct key *keys_find(const struct model_keys *model, const char *path);
 

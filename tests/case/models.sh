@@ -74,6 +74,15 @@ says 'gas = a table is a key of model = "two_phase"'
 sed 's/model = "given_flow"/model = "given_flaw"/' "$case" > a.lua
 ends 2 "$talus" check a.lua
 says '"two_phase" or "given_flow"'
+sed 's/shear_rate = 0.5/tracers = { a = function(x, y) return x end }/' "$case" > a.lua
+ends 2 "$talus" check a.lua
+says 'tracers = a table is a key of model = "two_phase"'
+sed 's/stop = 1,/stop = 1, stop_at_rest = { speed = 1, time = 1 },/' "$case" > a.lua
+ends 2 "$talus" check a.lua
+says 'output.stop_at_rest = a table is a key of model = "two_phase"'
+sed 's/shape = .*/-- none/' "$case" > a.lua
+ends 2 "$talus" run a.lua
+says 'grains.shape is missing'
 echo 'return { dimension = 2, shear_rate = 1 }' > a.lua
 ends 2 "$talus" check a.lua
 says 'shear_rate = 1 is a key of model = "given_flow"'

@@ -18,9 +18,10 @@ struct flow { double rate; }; /* values of the keys */
 static const struct key KEYS[] = {
     {"shear_rate", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "1", .unit = "1/s",
      .offset = offsetof(struct flow, rate), .help = "shear rate"}};
-/* clang-format on */
+static const char *const REFUSED[] = {"tracers", "velocity", "output.stop_at_rest", NULL};
 static const struct model_keys keys = {"given_flow", "grains in a shear flow",
-                                       KEYS, 1, sizeof(struct flow)};
+    KEYS, 1, sizeof(struct flow), REFUSED};
+/* clang-format on */
 
 struct given_flow {
   struct model model;
@@ -40,7 +41,6 @@ static void set_velocity(struct model *model) {
     sim->u_f->v[f] = flow->rate * mesh->x[mesh->face_owner[f]][1];
   field_fill_faces(mesh, sim->u_f);
 }
-
 static struct field *add(struct given_flow *sim, const char *name,
                          enum field_location at,
                          const struct field_rule *rule) {
@@ -68,7 +68,6 @@ static struct model *resume(const struct params *params, struct forest *f) {
   sim->flux = add(sim, "flux", FIELD_FACE, NULL);
   return &sim->model;
 }
-
 static bool adapt(struct given_flow *sim) {
   const bool changed =
       adapt_grid(&sim->grid, &(struct followed){.c = sim->c, .u = sim->u});
@@ -81,6 +80,7 @@ static struct model *start(const struct params *params,
                            const struct model_start *start) {
   const struct function *shape = &params->shape;
   struct forest_layout layout;
+  if (!shape->eval) USER_ERROR("grains.shape is missing");
   grid_layout(params, &layout);
   struct forest *f = forest_new(MPI_COMM_WORLD, &layout, params->level_max);
   struct given_flow *sim = (struct given_flow *)resume(params, f);
