@@ -560,7 +560,7 @@ static void carry_with_grains(struct two_phase *sim, double dt) {
   projection.rho = rho;
   projection.alpha_f = alpha_f;
   projection_face_velocity(&projection, 0, u, sim->u_f->v);
-  make_solenoidal_by(sim, &projection, dt, sim->u_f->v);
+  sim->carrying = make_solenoidal_by(sim, &projection, dt, sim->u_f->v);
   scratch_give(&sim->scratch, __func__);
   end_projection(sim);
 }
@@ -629,15 +629,16 @@ static bool is_solved(const struct solve_stats *stats, double tolerance) {
 static bool has_failed(const struct two_phase *sim) {
   const struct params *params = sim->params;
   const struct solve_stats *solve[] = {&sim->pressure, &sim->predictor,
-                                       &sim->viscous};
-  static const char *const name[] = {"pressure", "predictor", "viscous"};
+                                       &sim->carrying, &sim->viscous};
+  static const char *const name[] = {"pressure", "predictor", "carrying",
+                                     "viscous"};
   const char *wild = fields_not_finite(&sim->grid.fields, sim->grid.mesh);
   bool failed = wild != NULL;
   if (failed) {
     log_info("step %lld: %s is not finite", (long long)sim->model.step, wild);
   }
-  for (int k = 0; k < 3; k++) {
-    const double tolerance = k < 2 ? params->tolerance_pressure
+  for (int k = 0; k < 4; k++) {
+    const double tolerance = k < 3 ? params->tolerance_pressure
                                    : params->tolerance_viscous * sim->scale;
     if (is_solved(solve[k], tolerance)) continue;
     if (solve[k]->status == SOLVE_INCOMPATIBLE) {

@@ -95,6 +95,7 @@ struct two_phase {
 
   double travel;    /* cells the surface may have moved since adaptation */
   double slow_time; /* that the grains have been slow (rest.h), s */
+  struct solve_stats carrying; /* of u_f with an exact yield */
   struct solve_stats pressure, predictor, viscous; /* of the last step, by
                               Picard repetitions all their iterations and the
                               worst residual */
