@@ -19,6 +19,8 @@ import pathlib
 import re
 import sys
 
+import checker
+
 # What each folder may include besides itself and standard C, from the bottom
 # up. `params` is the plain description of a case that `case` fills and others
 # read.
@@ -83,22 +85,17 @@ def strip_comments(text):
     return token.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), text)
 
 
-class Checker:
+class Checker(checker.Checker):
     """Finds violations in the tree below `root`."""
 
     def __init__(self, root):
-        self.root = root
+        super().__init__(root)
         self.folder_of_stem = dict(HEADER_ONLY)
         for path in root.glob("src/*.c"):
             self.folder_of_stem[path.stem] = path.stem
         for path in sorted([*root.glob("tree/*.c"), *root.glob("src/*/*.c")]):
             if path.parent.name not in MODELS:
                 self.folder_of_stem.setdefault(path.stem, path.parent.name)
-        self.violations = []
-
-    def complain(self, path, line, message):
-        name = path.relative_to(self.root)
-        self.violations.append(f"{name}:{line}: {message}")
 
     def folder_of(self, path):
         """Name of the folder a file counts as; "?" if nothing says."""
@@ -185,16 +182,7 @@ class Checker:
                         "src/*.[ch]", "src/*/*.[ch]", "tree/*.[ch]"):
             for path in sorted(self.root.glob(pattern)):
                 self.check_file(path)
-        return self.violations
-
-
-def main():
-    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else
-                        pathlib.Path(__file__).parent.parent).resolve()
-    violations = Checker(root).check_all()
-    print("\n".join(violations), end="\n" if violations else "")
-    return 1 if violations else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(checker.run(Checker))

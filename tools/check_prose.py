@@ -3,7 +3,7 @@
 """Verifies the rules of prose that a script can see.
 
 1. What stands over a function says what the function does, so it begins with a
-   verb, not with one of NOT_FIRST.
+   verb, not with one of NOT_FIRST; no comment begins as NEVER_FIRST.
 2. Papers that are cited by key, [weymouth_yue_2010], are in references.bib.
 3. Files that comments and pages name exist: the path from the root, that below
    include/ or include/talus/, or a name alone. NAME in capitals, as in NAME.c,
@@ -16,11 +16,15 @@ import pathlib
 import re
 import sys
 
+import checker
+
 NOT_FIRST = {"Of", "What", "Whether", "Which", "The", "A", "An", "How", "So",
              "Else", "It", "Its", "This", "That", "Those", "These", "Where"}
 # Files of other programs.
 FOREIGN = {"lstrlib.c", "granular_sandglass.c"}
 
+# Words that no comment begins with, over a function or not.
+NEVER_FIRST = re.compile(r"/\*\s+\*?\s*(Of|What|Whether|Else|So|The same)\b")
 COMMENT = re.compile(r"/\*.*?\*/", re.S)
 # A comment at the begin of a line, then the head of a function.
 OVER_FUNCTION = re.compile(r"^/\*(?P<text>(?:(?!\*/).)*)\*/ *\n"
@@ -33,11 +37,11 @@ CITED = re.compile(r"\[(" + KEY.pattern + r")[^]]*\]")
 ANY = re.compile(r"(?<![A-Za-z])[A-Z]{3,}(?=[./])")
 
 
-class Checker:
+class Checker(checker.Checker):
     """Finds violations in the tree below `root`."""
 
     def __init__(self, root):
-        self.root = root
+        super().__init__(root)
         self.sources = [path for pattern in
                         ("include/**/*.h", "src/**/*.[ch]", "tree/*.[ch]",
                          "tests/**/*.[ch]") for path in root.glob(pattern)]
@@ -48,12 +52,9 @@ class Checker:
         papers = root / "references.bib"
         self.papers = (set(KEY.findall(papers.read_text(encoding="utf-8")))
                        if papers.exists() else set())
-        self.violations = []
 
-    def complain(self, path, text, place, message):
-        line = text.count("\n", 0, place) + 1
-        name = path.relative_to(self.root)
-        self.violations.append(f"{name}:{line}: {message}")
+    def complain_at(self, path, text, place, message):
+        self.complain(path, text.count("\n", 0, place) + 1, message)
 
     def exists(self, name):
         if ANY.search(name):
@@ -66,14 +67,14 @@ class Checker:
     def check_names(self, path, text, begin, end):
         for match in FILE.finditer(text, begin, end):
             if not self.exists(match.group(1)):
-                self.complain(path, text, match.start(),
+                self.complain_at(path, text, match.start(),
                               f"there is no {match.group(1)}")
 
     def check_papers(self, path, text, begin, end):
         for match in CITED.finditer(text, begin, end):
             for key in KEY.findall(match.group()):
                 if key not in self.papers:
-                    self.complain(path, text, match.start(),
+                    self.complain_at(path, text, match.start(),
                                   f"{key} is not in references.bib")
 
     def check_source(self, path):
@@ -81,10 +82,14 @@ class Checker:
         for comment in COMMENT.finditer(text):
             self.check_names(path, text, *comment.span())
             self.check_papers(path, text, *comment.span())
+            first = NEVER_FIRST.match(comment.group())
+            if first:
+                self.complain_at(path, text, comment.start(),
+                                 f"begin otherwise than with {first.group(1)}")
         for match in OVER_FUNCTION.finditer(text):
             word = match.group("text").lstrip("\n *").split(None, 1)[:1]
             if word and word[0].strip(",:;") in NOT_FIRST:
-                self.complain(path, text, match.start(),
+                self.complain_at(path, text, match.start(),
                               f"begin with a verb, not with {word[0]}")
 
     def check_all(self):
@@ -93,16 +98,7 @@ class Checker:
         for path in sorted(self.pages):
             text = path.read_text(encoding="utf-8")
             self.check_names(path, text, 0, len(text))
-        return self.violations
-
-
-def main():
-    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else
-                        pathlib.Path(__file__).parent.parent).resolve()
-    violations = Checker(root).check_all()
-    print("\n".join(violations), end="\n" if violations else "")
-    return 1 if violations else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(checker.run(Checker))

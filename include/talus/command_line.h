@@ -10,7 +10,7 @@
 
 enum { COMMAND_LINE_MAX_OVERRIDES = 64 };
 
-/* What stands behind `run` or `check`. Texts are borrowed from argv. */
+/* Holds the words behind `run` or `check`. Texts are borrowed from argv. */
 struct command_line {
   const char *case_path; /* NULL: none given */
   int noverrides;

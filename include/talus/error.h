@@ -97,7 +97,7 @@ int base_size(void);
 #define MPI_CHECK(call) \
   base_check_mpi(__FILE__, __LINE__, __func__, #call, (call))
 
-/* What an error calls besides: `record` writes a line to the log, `before` and
+/* Hooks of an error: `record` writes a line to the log, `before` and
  * `after` stand around the last words of a program that ends in good order.
  * Each may be NULL. */
 struct error_hooks {

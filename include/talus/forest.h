@@ -46,7 +46,7 @@ struct forest_layout {
   void *patch_context;
 };
 
-/* What became of the leaves in one forest_adapt, rank-local and before the
+/* Says what became of the leaves in one forest_adapt, rank-local and before the
  * repartition. New leaf i was made from old leaves first[i] .. first[i] +
  * count[i] - 1: count == 1 and delta == 0: kept; count == 1, delta > 0:
  * refined delta times from one leaf, count > 1: merged (delta == -1). */

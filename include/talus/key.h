@@ -37,7 +37,7 @@ struct key {
   enum key_type type;
   double low, high; /* allowed, both included unless ... */
   bool above;       /* ... low itself is not */
-  /* What holds when the key is not given: a value, or the path of a key whose
+  /* Holds when the key is not given: a value, or the path of a key whose
    * value is taken; NULL: it must be given; "": nothing. */
   const char *fallback;
   const char *unit; /* "" for a pure number or none */
@@ -56,7 +56,7 @@ struct key {
 #define KEY_OPTIONAL .fallback = ""
 #define KEY_DEFAULT .fallback =
 
-/* What `case` knows of a model. */
+/* Tells `case` of a model. */
 struct model_keys {
   const char *name;  /* of the key `model` */
   const char *title; /* one line */

@@ -75,7 +75,7 @@ enum {
   LEE_HUANG_NKEYS
 };
 
-/* What the kinetic theory makes of a solid fraction. */
+/* Holds what the kinetic theory makes of a solid fraction. */
 struct lee_huang_kinetic {
   double f4_2;     /* f_4^2 = T/(d gamma)^2 */
   double pressure; /* nu f_3 f_4^2 = p_K/(p I^2) */

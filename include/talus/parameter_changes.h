@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a restart changes of the parameters of the run that goes on. */
+/* Changes that a restart makes to the parameters of its run. */
 #ifndef TALUS_PARAMETER_CHANGES_H
 #define TALUS_PARAMETER_CHANGES_H
 

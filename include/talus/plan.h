@@ -19,7 +19,7 @@ struct plan {
   int64_t capacity;
 };
 
-/* What one rank asks of another: an entry named by a Morton key and a tag. */
+/* Names an entry that one rank asks of another, by a Morton key and a tag. */
 struct plan_request {
   uint64_t key;
   int32_t tag;

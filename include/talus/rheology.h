@@ -90,7 +90,7 @@ struct rheology_quantity {
   rheology_function *eval;
 };
 
-/* What the quantity "state" of a closure means. */
+/* Values of the quantity "state" of a closure. */
 enum rheology_state {
   RHEOLOGY_SOLID,        /* at rest: its yield stress is not reached */
   RHEOLOGY_QUASI_STATIC, /* more than 99 % of p by enduring contact */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What of a run goes into a checkpoint: the model, and how far the
+/* Keeps a run in a checkpoint: the model, and how far the
  * output has come. */
 #ifndef TALUS_RUN_STATE_H
 #define TALUS_RUN_STATE_H

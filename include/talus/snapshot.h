@@ -35,7 +35,7 @@ void snapshots_destroy(struct snapshots *snapshots);
 /* Number of the next one. */
 int snapshots_count(const struct snapshots *snapshots);
 
-/* What a snapshot says of itself. */
+/* Heads a snapshot. */
 struct snapshot_heading {
   double time;
   int64_t step;

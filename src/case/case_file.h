@@ -117,7 +117,7 @@ void rows_destroy(struct case_file *file);
 _Noreturn void read_fail(struct case_file *file, const char *path,
                          const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* The same without a value. */
+/* Fails likewise, without a value. */
 _Noreturn void read_fail_at(struct case_file *file, const char *path,
                             const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is in use, for the terminal and for parameters.csv. */
+/* Rows of the parameters in use, for the terminal and parameters.csv. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

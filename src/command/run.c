@@ -389,7 +389,7 @@ static void say_failure(const struct run *run) {
 
 /* The loop */
 
-/* What all ranks agree to do after a step. */
+/* Says what all ranks agree to do after a step. */
 struct verdict {
   int signal, out_of_time, checkpoint;
 };

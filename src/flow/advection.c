@@ -44,7 +44,7 @@ static inline void leaf_terms(const struct mesh *mesh, enum limiter limiter,
   }
 }
 
-/* What all components take over at a face, for the sign of u_n. */
+/* Holds what all components share at a face, for the sign of u_n. */
 struct upwind {
   const int32_t *node; /* on both sides */
   int32_t from, leaf;  /* upwind node and leaf; leaf -1: a boundary */

@@ -29,8 +29,9 @@ _Static_assert(NKEYS(KEYS) == LEE_HUANG_NKEYS, "keys and their names");
 /* Steps of the tables. */
 enum { NINERTIAL = 1024, NKINETIC = 1024 };
 static const double STEP = 0.2; /* of the logarithms */
-/* Of nu where the logarithms end, and of nu_0 - nu at the slowest shear, less
- * as its effect is magnified where p is close to p_ES(nu_0). */
+/* Margins of nu where the logarithms end, and of nu_0 - nu at the slowest
+ * shear, which is smaller as its effect is magnified where p is close to
+ * p_ES(nu_0). */
 static const double ERROR = 1e-7, SLOW_ERROR = 1e-9;
 /* Pressures below count as this, Pa, so that p_ES/p is finite. */
 static const double LEAST_P = 1e-280;

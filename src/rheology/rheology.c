@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What all closures share: equations (2)-(4) of rheology.h and the bounds. */
+/* Parts that all closures share: equations (2)-(4) of rheology.h and the bounds. */
 #include "talus/rheology.h"
 
 #include <float.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is needed only while a hierarchy is built. */
+/* Serves while a hierarchy is built. */
 #ifndef TALUS_SOLVER_LINKING_H
 #define TALUS_SOLVER_LINKING_H
 

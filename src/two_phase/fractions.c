@@ -11,7 +11,7 @@
 #include "talus/two_phase/time_step.h"
 #include "talus/vof.h"
 
-/* What the sweeps of a fraction work with: planes of its cut leaves, cc
+/* Arrays that the sweeps of a fraction work with: planes of its cut leaves, cc
  * (vof.h), and room for its flux. */
 struct sweep {
   double *normal[DIM], *plane, *cc, *flux;

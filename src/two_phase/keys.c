@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a case may say of the two-phase model. */
+/* Keys of the two-phase model. */
 #include "talus/two_phase/keys.h"
 #include "talus/key.h"
 #include "talus/params.h"

@@ -10,7 +10,7 @@
 enum { FIRST = 3, N = 4 };
 static const double kSlope = 0.43, kBars[N] = {1.9e-2, 6e-3, 1.7e-3, 4.5e-4};
 
-/* What is left when the flow is steady; NAN if it does not get there. */
+/* Return the error when the flow is steady; NAN if it does not get there. */
 struct steady {
   double l2, most, top, time, across;
 };

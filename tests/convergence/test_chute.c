@@ -57,7 +57,7 @@ static double plug_speed(const struct two_phase *sim) {
   return -sim->u[1]->v[axis];
 }
 
-/* Of a steady chute; NAN if it does not get there. */
+/* Return the result of a steady chute; NAN if it does not get there. */
 struct steady {
   double width, speed, l2, time;
 };

@@ -20,7 +20,7 @@
 
 enum { FIRST = 8, LAST = 11, LEVELS = LAST - FIRST + 1, MOST_STEPS = 8192 };
 static const double kAspect = 1.42;
-/* What two results may differ by, relative. */
+/* Bounds how much two results differ, relative. */
 static const double kHeightBar = 0.015, kOutlineBar = 0.015;
 
 struct heap {

@@ -18,7 +18,7 @@ static const double kAspect = 1.42;
 
 static double ratio_of(double a, double b) { return a / b - 1; }
 
-/* Of examples/rheologies.lua at level 7. */
+/* Holds for examples/rheologies.lua at level 7. */
 static const double kCell = 8. / 128, kGrain = 0.0219;
 
 /* Return the largest rise of an outline on the way out: 0 for a heap. */

@@ -226,7 +226,7 @@ static void steady_error(int base, int level, double *most, double *mean) {
   bench_destroy(b);
 }
 
-/* What the steady flow changes by in one step, at two resolutions. */
+/* Compares how much the steady flow changes in one step at two resolutions. */
 START_TEST(a_steady_swirl_is_kept_to_second_order) {
   const int jump = _i, level = DIM == 2 ? 6 : 5 - jump;
   double most[2], mean[2];

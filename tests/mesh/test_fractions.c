@@ -24,7 +24,7 @@ static double source(const struct two_phase *sim, double dt) {
   return mesh_sum(sim->grid.mesh, sum);
 }
 
-/* What a divergence of the velocity adds to the volume of grains is counted, in
+/* Divergence of the velocity adds to the volume of grains, which is counted, in
  * all steps. */
 START_TEST(volume_that_divergence_adds_is_counted) {
   struct params params = box_params(4);

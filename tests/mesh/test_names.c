@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a case may call a tracer, against the fields there are. */
+/* Names that a case may give a tracer, against the fields there are. */
 #include <check.h>
 #include <string.h>
 

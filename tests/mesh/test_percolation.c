@@ -51,7 +51,7 @@ static struct params case_of(double (*shape)(void *, const double[3]),
   return params;
 }
 
-/* What some calls do to a state, without steps between them. */
+/* Calls without steps between them, and what they do to a state. */
 struct effect {
   double gas[2]; /* volume below half of the grains, before and after */
   double drift;  /* of the volume of grains */

@@ -142,7 +142,7 @@ START_TEST(shear_rate_of_linear_velocities_is_exact) {
 }
 END_TEST
 
-/* What properties_viscosity reads and writes. */
+/* Arrays that properties_viscosity reads and writes. */
 struct mixture {
   struct phase grains, gas;
   struct field *c, *p, *plane;

@@ -120,7 +120,7 @@ START_TEST(a_linear_pressure_stays_so) {
 }
 END_TEST
 
-/* What a leaf is divided into gives the same leaf back, so that a grid that
+/* Children of a divided leaf give the same leaf back, so that a grid that
  * flickers costs no accuracy. */
 START_TEST(dividing_and_merging_back_changes_nothing) {
   enum { LEVEL = 4 };

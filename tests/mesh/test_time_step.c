@@ -174,7 +174,7 @@ START_TEST(another_gravity_is_a_new_start) {
 }
 END_TEST
 
-/* What comes in with speed 0.7 through a side of area 1. */
+/* Flow comes in with speed 0.7 through a side of area 1. */
 START_TEST(inflow_is_speed_times_area) {
   struct params params = box_params(3);
   params.gravity[DIM - 1] = 0;

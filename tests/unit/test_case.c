@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a case file becomes. What is said of bad ones: tests/case/bad_input.sh.
+/* Case files and what they become; tests/case/bad_input.sh has bad ones.
  */
 #include "talus/case.h"
 
@@ -244,7 +244,7 @@ START_TEST(other_limiters_are_refused) {
 }
 END_TEST
 
-/* The same box asks for a pressure level when friction needs the pressure. */
+/* Closed boxes ask for a pressure level when friction needs the pressure. */
 START_TEST(friction_without_pressure_level_is_refused) {
   load("return { dimension = 2, domain = { size = 1, level = 3 },\n" GRAVITY
        "grains = { density = 1, rheology = { 'coulomb', mu_s = 1 } },\n"
@@ -265,7 +265,7 @@ START_TEST(pressure_level_is_enough) {
 }
 END_TEST
 
-/* What follows, where the level then holds, and its value. */
+/* Words after the box, where the level then holds, and its value. */
 static const struct {
   const char *text;
   enum pressure_at at;

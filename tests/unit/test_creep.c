@@ -49,7 +49,7 @@ START_TEST(a_liquid_has_no_friction_to_speak_of) {
 }
 END_TEST
 
-/* What bounds and regularises the viscosity has no part in friction. */
+/* Bounds and regularisation have no part in friction. */
 START_TEST(friction_is_that_of_the_closure_itself) {
   struct params p = params_of("coulomb", "mu_s", 0.5);
   p.grains.rheology.gamma_r = 1;

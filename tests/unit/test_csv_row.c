@@ -59,7 +59,7 @@ START_TEST(what_is_written_is_read_back) {
 }
 END_TEST
 
-/* What a checksum is made of, and a copy. */
+/* Text that a checksum is made of, and a copy. */
 START_TEST(lines_are_kept_as_they_stand) {
   static const char *const lines[] = {"1,\"a\"\"\nb\",\r\n", "\n", "cut, \"sh"};
   char text[64] = "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is missing in a table that is to be continued, in words. */
+/* Rows missing in a table that is to be continued, in words. */
 #include "../../src/io/csv_rows.h"
 
 #include <check.h>

@@ -374,7 +374,7 @@ START_TEST(rheology_lets_nan_through) {
 }
 END_TEST
 
-/* Of lee_huang it does so below I_tran only: test_lee_huang.c. */
+/* Closure lee_huang does so below I_tran only: test_lee_huang.c. */
 START_TEST(rheology_stress_grows_with_shear_rate_and_pressure) {
   for (int m = 0; rheology_get(m) != NULL; m++)
     for (int k = 0; rheology_regularisation_name(k); k++) {

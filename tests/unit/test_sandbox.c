@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the sandbox of a case gives, and that it neither shows addresses nor
+/* Gifts of the sandbox of a case, which neither shows addresses nor
  * takes long. */
 #include "../../src/case/library.h"
 #include "../../src/case/sandbox.h"

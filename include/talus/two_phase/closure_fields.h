@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What snapshots and series.csv say of the deformation and of the closure.
+/* Shows deformation and closure in snapshots and series.csv.
  *
  *   shear_rate  sqrt(2 D:D) of a leaf, 1/s, from central differences. Leaves
  *               of grains (c >= 1/2) look at other such leaves only, on one

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a case may say of the two-phase model. */
+/* Keys of the two-phase model. */
 #ifndef TALUS_TWO_PHASE_KEYS_H
 #define TALUS_TWO_PHASE_KEYS_H
 

@@ -68,7 +68,7 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
                         const double *alpha_f, double *gravity_f);
 
 /* Set eta_f [nfaces_all], Pa s, at a time, s. gas NULL: grains only. c, p
- * filled; normal, plane: the planes of cut leaves; shear_f as above; work: two
+ * filled; normal, plane: the planes of cut leaves; shear_f: strain.h; work: two
  * scratch arrays [nfaces]. Collective. */
 void properties_viscosity(const struct mesh *mesh, double time,
                           const struct phase *grains, const struct phase *gas,
@@ -78,8 +78,9 @@ void properties_viscosity(const struct mesh *mesh, double time,
                           const double *shear_f, double *const work[2],
                           double *eta_f);
 
-/* Part of the line of each face that lies in grains, theta_f, and the pressure
- * there, p_f, both [nfaces]; arguments as above. */
+/* Set theta_f, the part of the line of each face that lies in grains, and p_f,
+ * the pressure at the face, Pa, both [nfaces]. c, p filled; normal, plane as
+ * above. */
 void properties_pressure(const struct mesh *mesh, const double density[2],
                          const double gravity[DIM], const double *c,
                          double *const normal[DIM], const double *plane,
