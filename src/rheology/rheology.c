@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parts that all closures share: equations (2)-(4) of rheology.h and the bounds. */
+/* Parts that all closures share: equations (2)-(4) of rheology.h and the
+ * bounds. */
 #include "talus/rheology.h"
 
 #include <float.h>
@@ -108,20 +109,25 @@ static void check_prepared(const struct rheology *r) {
         "call rheology_prepare for %s first", r->model->name);
 }
 
+static void plastic_viscosity(const struct rheology *r, double time, int32_t n,
+                              const double *shear_rate, const double *pressure,
+                              double *eta) {
+  if (r->model->eval != NULL)
+    r->model->eval(r, n, shear_rate, pressure, eta);
+  else
+    r->user(r->context, time, n, shear_rate, pressure, eta);
+}
+
 void rheology_eval(const struct rheology *r, double time, int32_t n,
                    const double *shear_rate, const double *pressure,
                    double *eta) {
-  const struct rheology_model *model = r->model;
   double p[RHEOLOGY_BLOCK], tau_y[RHEOLOGY_BLOCK];
   check_prepared(r);
   for (int32_t begin = 0; begin < n; begin += RHEOLOGY_BLOCK) {
     int32_t m = n - begin < RHEOLOGY_BLOCK ? n - begin : RHEOLOGY_BLOCK;
     const double *gamma = shear_rate + begin;
     clip_pressure(m, pressure + begin, p);
-    if (model->eval != NULL)
-      model->eval(r, m, gamma, p, eta + begin);
-    else
-      r->user(r->context, time, m, gamma, p, eta + begin);
+    plastic_viscosity(r, time, m, gamma, p, eta + begin);
     if (rheology_yields(r)) {
       yield_stress(r, m, gamma, p, tau_y);
       add_yield(r, m, gamma, tau_y, eta + begin);
@@ -133,17 +139,13 @@ void rheology_eval(const struct rheology *r, double time, int32_t n,
 void rheology_parts(const struct rheology *r, double time, int32_t n,
                     const double *shear_rate, const double *pressure,
                     double *eta, double *tau_y) {
-  const struct rheology_model *model = r->model;
   double p[RHEOLOGY_BLOCK];
   check_prepared(r);
   for (int32_t begin = 0; begin < n; begin += RHEOLOGY_BLOCK) {
     int32_t m = n - begin < RHEOLOGY_BLOCK ? n - begin : RHEOLOGY_BLOCK;
     const double *gamma = shear_rate + begin;
     clip_pressure(m, pressure + begin, p);
-    if (model->eval != NULL)
-      model->eval(r, m, gamma, p, eta + begin);
-    else
-      r->user(r->context, time, m, gamma, p, eta + begin);
+    plastic_viscosity(r, time, m, gamma, p, eta + begin);
     yield_stress(r, m, gamma, p, tau_y + begin);
     for (int32_t i = begin; i < begin + m; i++) {
       if (r->eta_min * shear_rate[i] < tau_y[i]) continue;

@@ -18,8 +18,7 @@ static void set_leaves(struct hierarchy *h, const double *eta_f,
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
-    const double width = mesh_width(mesh, i);
-    const double ratio = factor * mesh_volume(mesh, i) / (width * width);
+    const double ratio = conductance(mesh, i, factor);
     for (int f = 0; f < NFACE; f++) {
       const double lambda = kappa_f[face[f]] - 2. / 3 * eta_f[face[f]];
       h->bulk[f][s] = (float)(ratio * lambda);

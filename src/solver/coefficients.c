@@ -36,8 +36,7 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
-    const double width = mesh_width(mesh, i);
-    const double ratio = factor * mesh_volume(mesh, i) / (width * width);
+    const double ratio = conductance(mesh, i, factor);
     for (int f = 0; f < NFACE; f++) {
       h->w[f][s] = (float)(ratio * alpha_f[face[f]]);
     }

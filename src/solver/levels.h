@@ -160,6 +160,14 @@ static inline int corner_entry(int a, int upper_a, int b, int upper_b) {
                : 4 * pair_number(b, a) + upper_b + 2 * upper_a;
 }
 
+/* Give the conductance of a side of leaf i for a coefficient of 1: factor times
+ * area over distance. */
+static inline double conductance(const struct mesh *mesh, int32_t i,
+                                 double factor) {
+  const double width = mesh_width(mesh, i);
+  return factor * mesh_volume(mesh, i) / (width * width);
+}
+
 /* Set the two-point operator (coefficients.c): conductances factor * alpha_f
  * area / distance, mass [nleaves] per volume or NULL, walls by bc[nparts].
  * nparts is 1, or DIM for the components of a velocity, whose normal stress

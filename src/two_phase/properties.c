@@ -205,18 +205,18 @@ static void line_halves(const struct mesh *mesh, int d, int32_t f,
   if (leaf[1] < 0) half[1] = half[0];
 }
 
-/* Set theta_f [nfaces], the part of the line of a face in the grains, and p_f
- * [nfaces], the pressure at the face. */
-static void face_pressure(const struct mesh *mesh, const struct grains *grains,
-                          const double gravity[DIM], const double *p,
-                          const bool *closed, double *theta_f, double *p_f) {
-  const double *density = grains->density;
+void properties_pressure(const struct mesh *mesh, const double density[2],
+                         const double gravity[DIM], const double *c,
+                         double *const normal[DIM], const double *plane,
+                         const double *p, const bool *closed, double *theta_f,
+                         double *p_f) {
+  const struct grains grains = {density, c, normal, plane};
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
       const int patch = mesh->face_patch[f];
       double half[2] = {0}, rho[2];
-      line_halves(mesh, d, f, grains, half);
+      line_halves(mesh, d, f, &grains, half);
       for (int side = 0; side < 2; side++) {
         rho[side] = density[1] + half[side] * (density[0] - density[1]);
       }
@@ -303,15 +303,6 @@ static void mix_viscosity(const struct mesh *mesh, double time,
   share_stress(time, phase, shear_f, &m, eta_f);
 }
 
-void properties_pressure(const struct mesh *mesh, const double density[2],
-                         const double gravity[DIM], const double *c,
-                         double *const normal[DIM], const double *plane,
-                         const double *p, const bool *closed, double *theta_f,
-                         double *p_f) {
-  const struct grains where = {density, c, normal, plane};
-  face_pressure(mesh, &where, gravity, p, closed, theta_f, p_f);
-}
-
 void properties_viscosity(const struct mesh *mesh, double time,
                           const struct phase *grains, const struct phase *gas,
                           const double gravity[DIM], const double *c,
@@ -322,8 +313,8 @@ void properties_viscosity(const struct mesh *mesh, double time,
   double *theta_f = work[0], *p_f = work[1];
   const double density[2] = {grains->density,
                              gas ? gas->density : grains->density};
-  const struct grains where = {density, c, normal, plane};
-  face_pressure(mesh, &where, gravity, p, closed, theta_f, p_f);
+  properties_pressure(mesh, density, gravity, c, normal, plane, p, closed,
+                      theta_f, p_f);
   rheology_eval(&grains->rheology, time, mesh->nfaces, shear_f, p_f, eta_f);
   if (gas) {
     const struct rheology *const phase[2] = {&grains->rheology, &gas->rheology};

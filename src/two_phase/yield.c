@@ -84,26 +84,44 @@ static void bear_weight(const struct two_phase *sim, const double *wet,
   }
 }
 
-/* Find a rate of the flow from gravity, with `stress` a weight per area or 0
- * for that of a tree, and from the fastest flow over the domain: the larger
- * one. */
-static double find_rate(const struct two_phase *sim, double stress) {
-  const struct params *params = sim->params;
-  const struct mesh *mesh = sim->grid.mesh;
-  double g2 = 0, length = 0, speed = time_step_boundary_speed(sim, false);
+/* Find the length of the domain. */
+static double find_length(const struct params *params) {
+  double length = 0;
   for (int d = 0; d < DIM; d++) {
-    g2 += params->gravity[d] * params->gravity[d];
     length = max2(length, params->size * params->trees[d]);
+  }
+  return length;
+}
+
+/* Find the rate U/L of the fastest flow over the domain. */
+static double find_flow(const struct two_phase *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double speed = time_step_boundary_speed(sim, false);
+  for (int d = 0; d < DIM; d++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       speed = max2(speed, fabs(sim->u[d]->v[i]));
     }
   }
-  const double flow = mesh_max(mesh, speed) / length;
-  const double height = stress / params->grains.density; /* times g */
-  const double fall =
-      sqrt(stress > 0 && g2 > 0 ? g2 / height : sqrt(g2) / length);
-  const double rate = max2(fall, flow);
+  return mesh_max(mesh, speed) / find_length(sim->params);
+}
+
+/* Give the larger of the rates of fall, sqrt(g/H), and of flow; without either
+ * that of the run. */
+static double larger_rate(const struct params *params, double height,
+                          double flow) {
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  const double rate = max2(sqrt(sqrt(g2) / height), flow);
   return rate > 0 ? rate : 1 / params->stop;
+}
+
+/* Give the height of grains that weighs `stress`; without either the length of
+ * the domain. */
+static double height_of(const struct params *params, double stress) {
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  return stress > 0 && g2 > 0 ? stress / (params->grains.density * sqrt(g2))
+                              : find_length(params);
 }
 
 static double largest_yield_stress(const struct two_phase *sim) {
@@ -129,7 +147,9 @@ void yield_update(struct two_phase *sim, double *const u[DIM]) {
                       sim->plane->v, sim->p->v, sim->grid.closed, wet, p_f);
   find_wet(sim, wet);
   bear_weight(sim, wet, p_f);
-  const double least = LEAST_RATE * find_rate(sim, 0);
+  const double flow = find_flow(sim);
+  const double least =
+      LEAST_RATE * larger_rate(params, find_length(params), flow);
   for (int32_t f = 0; f < mesh->nfaces; f++) shear[f] = max2(shear[f], least);
   rheology_parts(&params->grains.rheology, sim->model.time, mesh->nfaces, shear,
                  p_f, eta, tau_y);
@@ -146,7 +166,8 @@ void yield_update(struct two_phase *sim, double *const u[DIM]) {
   }
   scratch_give(&sim->scratch, __func__);
   mesh_fill_faces(mesh, 1, &eta);
-  sim->yield.gamma_r = STIFF * find_rate(sim, largest_yield_stress(sim));
+  const double height = height_of(params, largest_yield_stress(sim));
+  sim->yield.gamma_r = STIFF * larger_rate(params, height, flow);
 }
 
 /* Set `guess` to D* at face f, over dt. */
