@@ -57,6 +57,8 @@ local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
 local eta_max = param("eta_max", 10, "cap on viscosity, in rho sqrt(g L0^3)")
+local regularisation = param("regularisation", "clip",
+                             "of the yield stress; exact: without eta_max")
 local slip = param("slip", 0, "slip length of the floor, in L0; 0: rough")
 local rho_gas = param("rho_gas", 1e-3, "density of the gas, in rho")
 local shift = param("shift", 0, "cells by which the side misses a face")
@@ -86,7 +88,8 @@ return {
   grains = {
     density = rho,
     rheology = { "mu_i", mu_s = mu_s, delta_mu = delta_mu, I0 = I0, d = d,
-                 eta_min = eta_min, eta_max = eta_max },
+                 eta_min = eta_min, regularisation = regularisation,
+                 eta_max = regularisation ~= "exact" and eta_max or nil },
     -- distance to the edges of the column, positive inside
     shape = function(x, y) return math.min(width - x, height - y) end,
   },

@@ -92,6 +92,18 @@ bad_edit closure_missing 'closure_missing.lua:4: grains.rheology.d is missing' \
 bad_edit closure_together \
   'closure_together.lua:4: grains.rheology: nu_min < nu_0 < nu_max' \
   '"mu_i", d = 0.05' '"lee_huang", nu_0 = 0.64'
+bad_edit exact_cap 'exact_cap.lua:4: .*eta_max = 10 has no meaning with' \
+  'eta_max = 10' 'eta_max = 10, regularisation = "exact"'
+bad_case exact_theta 'exact_theta.lua:9: solver.theta = 0.5: .*"exact" needs' \
+  "$(sed 's/eta_max = 10/regularisation = "exact"/
+    s/output =/solver = { theta = 0.5 }, output =/' <<< "$good")"
+bad_edit exact_of_none 'exact_of_none.lua:4: .*"exact" needs a yield stress' \
+  '"mu_i", d = 0.05, eta_max = 10' '"newtonian", eta = 1, regularisation = "exact"'
+bad_edit exact_gas 'exact_gas.lua:6: .*"exact" is for the grains' \
+  '"newtonian", eta = 1e-4' \
+  '"bingham", tau_y = 1, eta_0 = 1, regularisation = "exact"'
+bad_edit exact_name 'exact_name.lua:4: .*did you mean `?exact' \
+  'eta_max = 10' 'regularisation = "exct"'
 bad_edit walls_width 'walls_width.lua:4: grains.side_walls.width is missing' \
   'density = 1,' 'density = 1, side_walls = { mu = 0.2 },'
 bad_edit walls_key 'walls_key.lua:4: unknown key grains.side_walls.w = 1' \

@@ -88,6 +88,12 @@ for n in 1 3; do
   must $n talus3d run $box -o pieces-$n --quiet --restart
   same "box on $n" box-$n pieces-$n
 done
+# exact yield keeps a stress and its changes, also over an adaptation
+rest="$root/examples/rest.lua level=5 tilt=15 stop=1"
+must 2 talus2d run $rest -o yield --quiet
+stops 2 talus2d run $rest -o yields --quiet --max-steps 31
+must 2 talus2d run $rest -o yields --quiet --restart
+same "rest on 2" yield yields
 cp -r parts-1 again
 must 1 talus2d run $shape stop=2.5 -o again --quiet --restart
 [ "$(own_words < output)" = "talus: restart with stop = 2.5 (was 2)" ] ||
