@@ -6,7 +6,7 @@
 . "$(dirname "$0")/common.bash"
 shape="$root/examples/column.lua level=7 times=0.1,0.66"
 column="$shape stop=2"
-endless="$shape stop=1e4"
+endless="$shape stop=1e8"
 box="$root/examples/box3d.lua level=4 stop=0.5"
 
 # talus RANKS PROGRAM ARGUMENTS...
