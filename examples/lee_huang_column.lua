@@ -81,7 +81,9 @@ local friction = param("friction", 0,
 local slip = param("slip", 0, "slip length of the bed, m; 0: rough")
 -- the heap at rest creeps at less than 1e-4 sqrt(g H_i), sin(alpha)/(2 eta_cap)
 -- with tan(alpha) = eta_S up to 0.57
-local eta_cap = param("eta_cap", 2500, "cap on viscosity, rho sqrt(g H_i^3)")
+local eta_cap = param("eta_cap", 2500,
+                      "cap on viscosity, rho sqrt(g H_i^3); not of exact")
+local regularisation = param("regularisation", "clip", "of the yield stress")
 local eta_floor = param("eta_floor", 1, "least viscosity, rho sqrt(g d^3)")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 
@@ -103,7 +105,10 @@ local eta_gas = 1e-4 * rho * math.sqrt(g * length^3)    -- Pa s
 local rheology = friction > 0 and { "coulomb", mu_s = friction }
                  or { "lee_huang", eta_S = eta_S, e_eff = e_eff, d = d }
 rheology.eta_min = eta_floor * rho * math.sqrt(g * d^3)
-rheology.eta_max = eta_cap * rho * math.sqrt(g * height^3)
+rheology.regularisation = regularisation
+if regularisation ~= "exact" then
+  rheology.eta_max = eta_cap * rho * math.sqrt(g * height^3)
+end
 
 return {
   title = "Column of glass beads, case " .. case,

@@ -47,6 +47,9 @@
  * below 1e-6 of mu and nu, for any I and p (4e-6 of nu at delta = 0.2).
  * f_2 > f_3 wherever p_ES counts, or prepare refuses the parameters.
  *
+ * With regularisation = "exact" the yield stress is eta_S p_E, without the
+ * factor with n, and the plastic viscosity is eta_K.
+ *
  * A cell costs 40 times that of mu_i (docs/notes/closures.md).
  *
  *  [lee_huang_chiew_2015] Phys. Fluids 27 (2015) 113303,

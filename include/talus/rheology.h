@@ -78,6 +78,14 @@ typedef void rheology_function(const struct rheology *r, int32_t n,
                                const double *restrict pressure,
                                double *restrict out);
 
+/* Fill the plastic viscosity eta[i] and the yield stress tau_y[i] as a
+ * rheology_function does one of them. */
+typedef void rheology_parts_function(const struct rheology *r, int32_t n,
+                                     const double *restrict shear_rate,
+                                     const double *restrict pressure,
+                                     double *restrict eta,
+                                     double *restrict tau_y);
+
 /* Compute viscosity as rheology_function, by a function of the user that may
  * look at the time, s. */
 typedef void rheology_user_function(void *context, double time, int32_t n,
@@ -108,6 +116,9 @@ struct rheology_model {
   int nkeys;
   rheology_function *eval;  /* plastic viscosity eta_f, Pa s; NULL: r->user */
   rheology_function *yield; /* yield stress tau_y, Pa; NULL: none */
+  bool holds; /* at rest tau_y > 0 where p > 0, so that "exact" has a meaning */
+  /* Fills both for "exact"; NULL: eval and yield do. */
+  rheology_parts_function *parts;
   const struct rheology_quantity *outputs; /* [noutputs] */
   int noutputs;
   bool mu_of_i; /* tau/p depends on I alone; has keys d and rho */
@@ -206,7 +217,8 @@ void rheology_parts(const struct rheology *r, double time, int32_t n,
                     const double *shear_rate, const double *pressure,
                     double *eta, double *tau_y);
 
-/* Does the closure have a yield stress? */
+/* Does the closure have a yield stress at rest, so that "exact" may be asked
+ * for? */
 bool rheology_yields(const struct rheology *r);
 
 /* Compute quantity k < r->model->noutputs as rheology_eval does the viscosity;

@@ -178,11 +178,12 @@ void closure_read(struct case_file *file, const struct key *key) {
                  key->path);
   if (phase->rheology.regularisation == RHEOLOGY_EXACT &&
       !rheology_yields(&phase->rheology))
-    read_fail_at(file, key->path,
-                 "%s: regularisation = \"exact\" needs a yield stress, and %s "
-                 "has none of its own: take \"clip\", another closure, or give "
-                 "cohesion",
-                 key->path, model->name);
+    read_fail_at(
+        file, key->path,
+        "%s: regularisation = \"exact\" needs a stress that holds grains at "
+        "rest, and %s has none: take \"clip\", another closure, or give "
+        "cohesion",
+        key->path, model->name);
   if (phase->rheology.eta_min > phase->rheology.eta_max)
     read_fail_at(file, key->path, "%s: eta_min = %g is above eta_max = %g",
                  key->path, phase->rheology.eta_min, phase->rheology.eta_max);

@@ -34,4 +34,5 @@ const struct rheology_model rheology_bingham = {
     .nkeys = NKEYS(KEYS),
     .eval = eval,
     .yield = yield,
+    .holds = true,
 };

@@ -35,4 +35,5 @@ const struct rheology_model rheology_coulomb = {
     .nkeys = NKEYS(KEYS),
     .eval = eval,
     .yield = rheology_friction,
+    .holds = true,
 };

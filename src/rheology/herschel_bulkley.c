@@ -35,4 +35,5 @@ const struct rheology_model rheology_herschel_bulkley = {
     .nkeys = NKEYS(KEYS),
     .eval = eval,
     .yield = yield,
+    .holds = true,
 };

@@ -20,7 +20,8 @@ static const struct rheology_key KEYS[] = {
     {"delta", "1", 0.2, 2., 0.58, "its exponent"},
     {"K", "Pa", 1e-6, 1e15, 1e8, "stiffness of the packing"},
     {"chi", "1", 0.1, 10., 1.5, "exponent of its pressure"},
-    {"n", "s", 1e-6, 1e12, 1e5, "regularisation 1 - exp(-n gamma/2)"},
+    {"n", "s", 1e-6, 1e12, 1e5,
+     "regularisation 1 - exp(-n gamma/2); exact: of `state` only"},
     {"g0_exponent", "1", 0.5, 3., 1.,
      "of 1 - nu/nu_max in g_0; see the source"},
 };
@@ -205,6 +206,22 @@ static void eval(const struct rheology *r, int32_t n,
   }
 }
 
+/* Fill the viscosity of collisions, and the stress of enduring contact, eq. 17,
+ * that grains keep at rest: without the regularisation of eq. 18. */
+static void parts(const struct rheology *r, int32_t n,
+                  const double *restrict shear_rate,
+                  const double *restrict pressure, double *restrict eta,
+                  double *restrict tau_y) {
+  struct states s;
+  const double eta_S = r->param[LEE_HUANG_ETA_S];
+  find_states(r, n, shear_rate, pressure, &s);
+  for (int32_t i = 0; i < n; i++) {
+    const double tau_K = s.stress[i] * s.I_2[i] * pressure[i];
+    eta[i] = tau_K / at_least(shear_rate[i], DBL_MIN);
+    tau_y[i] = eta_S * s.pE_over_p[i] * pressure[i];
+  }
+}
+
 static void eval_nu(const struct rheology *r, int32_t n,
                     const double *restrict shear_rate,
                     const double *restrict pressure, double *restrict out) {
@@ -355,6 +372,8 @@ const struct rheology_model rheology_lee_huang = {
     .keys = KEYS,
     .nkeys = NKEYS(KEYS),
     .eval = eval,
+    .holds = true,
+    .parts = parts,
     .outputs = OUTPUTS,
     .noutputs = NKEYS(OUTPUTS),
     .prepare = prepare,

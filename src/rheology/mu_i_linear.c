@@ -34,5 +34,6 @@ const struct rheology_model rheology_mu_i_linear = {
     .nkeys = NKEYS(KEYS),
     .eval = eval,
     .yield = rheology_friction,
+    .holds = true,
     .mu_of_i = true,
 };

@@ -37,5 +37,6 @@ const struct rheology_model rheology_mu_i_power = {
     .nkeys = NKEYS(KEYS),
     .eval = eval,
     .yield = rheology_friction,
+    .holds = true,
     .mu_of_i = true,
 };

@@ -12,7 +12,9 @@
  * talus/rheology.h), which I_1 is unless given, to an upper limit that mu_inf
  * moves far up. As mu falls to 0 with I there is no yield stress in the limit,
  * but tau/gamma is infinite there all the same; so all of mu p passes for a
- * yield stress. Defaults: glass beads, in the paper.
+ * yield stress, but for "exact" for a plastic viscosity: nothing would hold
+ * grains, which creep at I = A_- exp(-alpha/tan^2) on a slope. Defaults: glass
+ * beads, in the paper.
  */
 #include <float.h>
 
@@ -31,6 +33,9 @@ static const struct rheology_key KEYS[] = {
     {"d", "m", 1e-12, 1e6, NAN, "grain diameter"},
     {"rho", "kg/m^3", 1e-12, 1e12, NAN, "density in the inertial number"},
 };
+
+/* Viscosity at rest, Pa s, in place of infinity. */
+#define MOST 1e30
 
 struct lower_branch {
   double I_1;       /* its end; 0: there is none */
@@ -88,6 +93,17 @@ static void yield(const struct rheology *r, int32_t n,
   }
 }
 
+static void parts(const struct rheology *r, int32_t n,
+                  const double *restrict shear_rate,
+                  const double *restrict pressure, double *restrict eta,
+                  double *restrict tau_y) {
+  yield(r, n, shear_rate, pressure, eta);
+  for (int32_t i = 0; i < n; i++) {
+    eta[i] = at_most(eta[i] / at_least(shear_rate[i], DBL_MIN), MOST);
+    tau_y[i] = 0;
+  }
+}
+
 const struct rheology_model rheology_mu_i_well_posed = {
     .name = "mu_i_well_posed",
     .title = "mu(I) regularised at both ends, mu(I) p/gamma",
@@ -96,6 +112,7 @@ const struct rheology_model rheology_mu_i_well_posed = {
     .nkeys = NKEYS(KEYS),
     .eval = eval,
     .yield = yield,
+    .parts = parts,
     .mu_of_i = true,
     .prepare = prepare,
 };

@@ -76,19 +76,23 @@ static void clip_eta(const struct rheology *r, int32_t n, double *eta) {
     eta[i] = at_most(at_least(eta[i], eta_min), eta_max);
 }
 
+static void add_cohesion(const struct rheology *r, int32_t n, double *tau_y) {
+  const double cohesion = r->cohesion;
+  for (int32_t i = 0; i < n && cohesion > 0; i++) tau_y[i] += cohesion;
+}
+
 /* Compute the yield stress of the closure and cohesion. */
 static void yield_stress(const struct rheology *r, int32_t n,
                          const double *shear_rate, const double *pressure,
                          double *tau_y) {
-  const double cohesion = r->cohesion;
   for (int32_t i = 0; i < n && r->model->yield == NULL; i++) tau_y[i] = 0;
   if (r->model->yield != NULL)
     r->model->yield(r, n, shear_rate, pressure, tau_y);
-  for (int32_t i = 0; i < n && cohesion > 0; i++) tau_y[i] += cohesion;
+  add_cohesion(r, n, tau_y);
 }
 
 bool rheology_yields(const struct rheology *r) {
-  return r->model->yield != NULL || r->cohesion > 0;
+  return r->model->holds || r->cohesion > 0;
 }
 
 const char *rheology_prepare(struct rheology *r) {
@@ -128,7 +132,7 @@ void rheology_eval(const struct rheology *r, double time, int32_t n,
     const double *gamma = shear_rate + begin;
     clip_pressure(m, pressure + begin, p);
     plastic_viscosity(r, time, m, gamma, p, eta + begin);
-    if (rheology_yields(r)) {
+    if (r->model->yield != NULL || r->cohesion > 0) {
       yield_stress(r, m, gamma, p, tau_y);
       add_yield(r, m, gamma, tau_y, eta + begin);
     }
@@ -145,8 +149,13 @@ void rheology_parts(const struct rheology *r, double time, int32_t n,
     int32_t m = n - begin < RHEOLOGY_BLOCK ? n - begin : RHEOLOGY_BLOCK;
     const double *gamma = shear_rate + begin;
     clip_pressure(m, pressure + begin, p);
-    plastic_viscosity(r, time, m, gamma, p, eta + begin);
-    yield_stress(r, m, gamma, p, tau_y + begin);
+    if (r->model->parts != NULL) {
+      r->model->parts(r, m, gamma, p, eta + begin, tau_y + begin);
+      add_cohesion(r, m, tau_y + begin);
+    } else {
+      plastic_viscosity(r, time, m, gamma, p, eta + begin);
+      yield_stress(r, m, gamma, p, tau_y + begin);
+    }
     for (int32_t i = begin; i < begin + m; i++) {
       if (r->eta_min * shear_rate[i] < tau_y[i]) continue;
       const double yield = tau_y[i] > 0 ? tau_y[i] / shear_rate[i] : 0;

@@ -97,8 +97,11 @@ bad_edit exact_cap 'exact_cap.lua:4: .*eta_max = 10 has no meaning with' \
 bad_case exact_theta 'exact_theta.lua:9: solver.theta = 0.5: .*"exact" needs' \
   "$(sed 's/eta_max = 10/regularisation = "exact"/
     s/output =/solver = { theta = 0.5 }, output =/' <<< "$good")"
-bad_edit exact_of_none 'exact_of_none.lua:4: .*"exact" needs a yield stress' \
+bad_edit exact_of_none 'exact_of_none.lua:4: .*"exact" needs a stress that holds' \
   '"mu_i", d = 0.05, eta_max = 10' '"newtonian", eta = 1, regularisation = "exact"'
+bad_edit exact_of_creep 'exact_of_creep.lua:4: .*, and mu_i_well_posed has none' \
+  '"mu_i", d = 0.05, eta_max = 10' \
+  '"mu_i_well_posed", d = 0.05, regularisation = "exact"'
 bad_edit exact_gas 'exact_gas.lua:6: .*"exact" is for the grains' \
   '"newtonian", eta = 1e-4' \
   '"bingham", tau_y = 1, eta_0 = 1, regularisation = "exact"'

@@ -233,6 +233,39 @@ START_TEST(rheology_cohesion_is_a_yield_stress_of_any_closure) {
 }
 END_TEST
 
+/* Closures with a regularisation of their own, n of lee_huang, have next to
+ * none here: exp(-n gamma/2) < 1e-21. */
+START_TEST(rheology_parts_add_up_to_the_viscosity) {
+  for (int m = 0; rheology_get(m) != NULL; m++) {
+    struct rheology r = make(rheology_get(m)->name);
+    if (r.model->limits != NULL) set(&r, "n", 1e12);
+    set(&r, "cohesion", 3.);
+    for (double gamma = 1e-10; gamma < 1e6; gamma *= 7)
+      for (double p = 1e-3; p < 1e6; p *= 7) {
+        double eta, tau_y;
+        rheology_parts(&r, 0, 1, &gamma, &p, &eta, &tau_y);
+        const double sum = viscosity(&r, gamma, p);
+        ck_assert_double_ge(tau_y, 3.);
+        ck_assert_double_eq_tol(eta + tau_y / gamma, sum, 1e-13 * sum);
+      }
+  }
+}
+END_TEST
+
+START_TEST(rheology_holds_where_there_is_a_yield_stress_at_rest) {
+  const double gamma = 0, p = 7;
+  for (int m = 0; rheology_get(m) != NULL; m++) {
+    struct rheology r = make(rheology_get(m)->name);
+    double eta, tau_y;
+    rheology_parts(&r, 0, 1, &gamma, &p, &eta, &tau_y);
+    ck_assert_int_eq(rheology_yields(&r), tau_y > 0);
+    ck_assert(tau_y >= 0 && eta >= 0 && isfinite(eta) && isfinite(tau_y));
+    set(&r, "cohesion", 3.);
+    ck_assert(rheology_yields(&r));
+  }
+}
+END_TEST
+
 START_TEST(rheology_is_cut_to_its_bounds) {
   struct rheology r = make("coulomb");
   ck_assert_int_eq(rheology_set(&r, "eta_max", 50.), 0);
@@ -488,6 +521,8 @@ Suite *rheology_suite(void) {
   tcase_add_test(formula, rheology_window_is_where_mu_i_is_well_posed);
   suite_add_tcase(suite, formula);
   TCase *shared = tcase_create("shared");
+  tcase_add_test(shared, rheology_parts_add_up_to_the_viscosity);
+  tcase_add_test(shared, rheology_holds_where_there_is_a_yield_stress_at_rest);
   tcase_add_test(shared, rheology_is_cut_to_its_bounds);
   tcase_add_test(shared,
                  rheology_at_rest_is_eta_max_where_there_is_a_yield_stress);
