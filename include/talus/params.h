@@ -107,6 +107,12 @@ enum limiter {
   LIMITER_GENERALISED /* at most 1.3 times that and (a + b) / 2 */
 };
 
+/* Does the flow carry momentum, rho u.grad u? */
+enum momentum_advection {
+  ADVECTION_ON,
+  ADVECTION_OFF /* no: unsteady Stokes flow, whose surface still moves */
+};
+
 struct params {
   char name[256]; /* of the case, gives the output directory */
   char title[256];
@@ -157,7 +163,8 @@ struct params {
   int max_iterations;        /* of one linear solve */
   int picard;                /* repetitions of viscosity and projection */
   double theta;              /* 1: backward Euler, 1/2: Crank-Nicolson */
-  enum limiter limiter;      /* of momentum advection away from the surface */
+  enum momentum_advection advection;
+  enum limiter limiter; /* of momentum advection away from the surface */
   struct criterion criterion[PARAMS_MAX_CRITERIA];
   int ncriteria;     /* 0: uniform at level_max */
   int adapt_every;   /* at most this many steps; 0: when needed */

@@ -101,10 +101,12 @@ static void sweep_grains(struct two_phase *sim, int d, double dt,
   fractions_update_planes(sim);
   sweep_tracer(sim, d, dt, u_f, &sweep, sim->c->v);
   sim->planes_hold = false;
-  momentum_flux(mesh, d, dt, density, u_f, c_old, sweep.flux, sim->band->v, u,
-                &flux);
-  momentum_update(mesh, d, dt, density, u_f, c_old, cc, sim->band->v, start,
-                  &flux, u);
+  if (sim->params->advection == ADVECTION_ON) {
+    momentum_flux(mesh, d, dt, density, u_f, c_old, sweep.flux, sim->band->v, u,
+                  &flux);
+    momentum_update(mesh, d, dt, density, u_f, c_old, cc, sim->band->v, start,
+                    &flux, u);
+  }
   scratch_give(&sim->scratch, __func__);
 }
 

@@ -9,6 +9,8 @@
 /* enum limiter */
 static const char *const LIMITERS[] = {"none", "minmod", "generalised_minmod",
                                        NULL};
+/* enum momentum_advection */
+static const char *const ADVECTIONS[] = {"on", "off", NULL};
 /* enum permeability */
 static const char *const PERMEABILITIES[] = {"auto", "no", "yes", NULL};
 
@@ -46,6 +48,10 @@ static const struct key KEYS[] = {
     {"solver.theta", KEY_NUMBER, .low = 0.5, .high = 1, KEY_DEFAULT "1",
      .unit = "", .offset = AT(theta),
      .help = "viscous step: 1 backward Euler, 0.5 Crank-Nicolson"},
+    {"solver.advection", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "on", .unit = "",
+     .offset = AT(advection), .choices = ADVECTIONS,
+     .help = "of momentum; off: unsteady Stokes flow, to see what inertia "
+             "does. Fractions and tracers are carried in both"},
     {"solver.limiter", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "none", .unit = "",
      .offset = AT(limiter), .choices = LIMITERS,
      .help = "of slopes in momentum advection, for steep velocities"},

@@ -27,6 +27,8 @@
  *     u^{n+1/2} = u^n + dt/2 (g - u^n.grad u^n), upwind, on faces
  *     u_f^{n+1/2} = its normal part less dt/2 alpha_f grad phi, solenoidal
  *     u <- u - dt/h sum_d [u_f^{n+1/2} (u^{n+1/2} - u^n)]_d
+ *   with solver.advection = "off" not this, and the second line of
+ *   fractions_advance not either
  * and, once or repeatedly with eta_f of the latest u and p (repeat_properties),
  * diffuse_momentum     with "exact" as yield.h says, else
  *     (rho + dt drag) u* - theta dt div(2 eta D(u*))
@@ -292,9 +294,12 @@ static void end_advection(struct two_phase *sim) {
   scratch_give(&sim->scratch, "advection");
 }
 
-/* Carry momentum away from the band with a solenoidal u_f at half steps. */
+/* Carry momentum away from the band with a solenoidal u_f at half steps; u_half
+ * has its room in any case. */
 static void advect_momentum(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
+  sim->u_half->v = scratch_take_one(&sim->scratch, FIELD_FACE, "u_half");
+  if (sim->params->advection == ADVECTION_OFF) return;
   const bool viscous = sim->params->theta < 1;
   double *u[DIM], *g[DIM], *out[DIM];
   field_arrays(sim->u_old, u), field_arrays(sim->u, out);
@@ -305,7 +310,6 @@ static void advect_momentum(struct two_phase *sim, double dt) {
     field_fill_many(mesh, DIM, sim->g);
   }
   struct advection_work work = begin_advection(sim);
-  sim->u_half->v = scratch_take_one(&sim->scratch, FIELD_FACE, "u_half");
   advection_predict(mesh, dt, u, g, sim->grid.closed, &work, sim->u_half->v);
   end_advection(sim);
   sim->predictor = make_solenoidal(sim, 0.5 * dt, sim->u_half->v);

@@ -83,6 +83,7 @@ START_TEST(case_fills_params_and_defaults) {
   ck_assert(isinf(params->dt_max));
   ck_assert_double_eq(params->theta, 1);
   ck_assert_int_eq(params->limiter, LIMITER_NONE);
+  ck_assert_int_eq(params->advection, ADVECTION_ON);
   ck_assert_double_eq(params->stop, 3);
   ck_assert_int_eq(params->ncriteria, 0);
   case_destroy(file);
@@ -234,6 +235,14 @@ START_TEST(limiter_is_read_by_name) {
   printed(file, case_write_parameters, printed_text);
   snprintf(row, sizeof row, "\nsolver.limiter,%s,,case\n", LIMITER_NAME[_i]);
   ck_assert_ptr_nonnull(strstr(printed_text, row));
+  case_destroy(file);
+}
+END_TEST
+
+START_TEST(advection_may_be_switched_off) {
+  struct case_file *file =
+      load("return { solver = { advection = 'off' },\n" REST "}");
+  ck_assert_int_eq(case_params(file)->advection, ADVECTION_OFF);
   case_destroy(file);
 }
 END_TEST
@@ -562,6 +571,7 @@ static TCase *files(void) {
   tcase_add_loop_test(tcase, closed_box_takes_its_pressure_somewhere, 0,
                       COUNT(PRESSURES));
   tcase_add_loop_test(tcase, limiter_is_read_by_name, 0, 3);
+  tcase_add_test(tcase, advection_may_be_switched_off);
   tcase_add_loop_exit_test(tcase, other_limiters_are_refused, EXIT_USER, 0, 2);
   tcase_add_test(tcase, criteria_take_level_of_domain_by_default);
   tcase_add_test(tcase, times_are_sorted_and_end_with_the_run);
