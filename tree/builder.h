@@ -79,5 +79,7 @@ void build_leaves(struct builder *b);
 void build_stencils(struct builder *b);
 /* Build, mesh_face.c: faces and their links. */
 void build_faces(struct builder *b);
+/* Build, mesh_rings.c: radii and slants of axisymmetric coordinates. */
+void build_rings(struct builder *b);
 
 #endif

@@ -26,6 +26,7 @@ struct mesh *mesh_new(struct forest *forest) {
   build_leaves(&b);
   build_stencils(&b);
   build_faces(&b);
+  if (b.layout->axisymmetric) build_rings(&b);
   hash_end(&b.hash);
   mem_free(b.average);
   mem_free(b.group_of);
@@ -61,6 +62,9 @@ void mesh_destroy(struct mesh *mesh) {
                    mesh->boundary_source,
                    mesh->boundary_patch,
                    mesh->boundary_h,
+                   mesh->slant,
+                   mesh->face_radius,
+                   mesh->average_slant,
                    mesh->shared};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   mem_free(mesh);

@@ -137,14 +137,17 @@ void mesh_fill_potential(const struct mesh *mesh, const double *rho, int n,
   fill(mesh, rho, n, v, bc, homogeneous);
 }
 
-/* Return the average of the finer faces of a side; poison if nobody has set one
- * of them, as in a sweep along another axis. */
-static double mean_of_faces(const double *v, const int32_t face[NCHILD / 2]) {
+/* Return the average of the finer faces of a side, by their areas, the second
+ * of two weighing 1 + slant; poison if nobody has set one of them, as in a
+ * sweep along another axis. */
+static double mean_of_faces(const double *v, const int32_t face[NCHILD / 2],
+                            double slant) {
   double sum = 0;
   for (int c = 0; c < NCHILD / 2; c++) {
     if (POISON_ON && is_poison(&v[face[c]])) return v[face[c]];
     sum += v[face[c]];
   }
+  if (slant != 0) sum += slant * (v[face[1]] - v[face[0]]);
   return sum / (NCHILD / 2);
 }
 
@@ -154,7 +157,8 @@ void mesh_fill_faces(const struct mesh *mesh, int n, double *const v[]) {
   for (int k = 0; k < n; k++) {
     for (int32_t i = 0; i < ncoarse; i++) {
       v[k][mesh->begin_face_average + i] =
-          mean_of_faces(v[k], mesh->average_face[i]);
+          mean_of_faces(v[k], mesh->average_face[i],
+                        mesh->average_slant ? mesh->average_slant[i] : 0);
     }
   }
 }

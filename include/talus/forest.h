@@ -38,6 +38,7 @@ struct forest_layout {
   double origin[DIM]; /* lower corner of the brick, m */
   int trees[DIM];     /* trees along each axis, >= 1 */
   bool periodic[DIM];
+  bool axisymmetric; /* x is the distance from an axis, y lies along it */
   /* Patch of a boundary face with centre x and edge h: `side` (2d lower, 2d+1
    * upper side of axis d) or another id below MESH_MAX_PATCHES; NULL: the
    * side. Fills `shares`, which comes with n = 0, if there are several. */

@@ -38,6 +38,8 @@
 #include "talus/forest.h"
 #include "talus/poison.h"
 
+#define MESH_TURN 6.283185307179586 /* 2 pi */
+
 enum {
   NCHILD = 1 << DIM,
   NFACE = 2 * DIM,
@@ -126,18 +128,38 @@ struct mesh {
   int level_finest;           /* over all ranks */
   const uint64_t *first_keys; /* [nranks + 1] first key of every rank's share
                                  of the leaves; borrowed from the forest */
+
+  /* Axisymmetric coordinates, else NULL */
+  double *slant;         /* [nleaves + nghosts] h/(2r) */
+  double *face_radius;   /* [nfaces] r, m */
+  double *average_slant; /* [nfaces_all - begin_face_average] of the mean over
+                            two faces side by side along r, else 0 */
 };
 
 /* Geometry. The functions below alone know how much sides and volumes weigh; a
  * length is x or h itself. With q_s the value on side s of a leaf, A the area
  * of a side, V the volume and w = V/A the width, net = sum_d (q_{2d+1} -
- * q_{2d}),   outflow = A net,   div = net/w. A metric, or sides that are partly
- * closed, would multiply the values in mesh_side, the volume, the width, and
- * the means of mesh_fill_faces. */
+ * q_{2d}),   outflow = A net,   div = net/w.
+ *
+ * Axisymmetric, with r = x and z = y: a leaf is a ring of the volume V = 2 pi r
+ * h^2 with its centre at r, A = 2 pi r h that of a side across z, and the sides
+ * across r have r -+ h/2 in the place of r. So mesh_side weighs values there by
+ * 1 -+ k, k = h/(2r) the slant, which is 0 on the axis, and mesh_fill_faces two
+ * faces side by side along r by their radii. A tensor has one component more,
+ * the hoop: D_tt = u_r/r, whose stress pulls with - tau_tt/r.
+ *
+ * A metric, or sides that are partly closed, multiplies the values in
+ * mesh_side, the volume, the width, and the means of mesh_fill_faces. */
 
-/* Return the volume of leaf or ghost i, m^3 (in 2D m^2). */
+/* Return whether the mesh is one of rings around an axis. */
+static inline bool mesh_is_axisymmetric(const struct mesh *mesh) {
+  return DIM == 2 && mesh->slant != NULL;
+}
+
+/* Return the volume of leaf or ghost i, m^3 (in a plane m^2). */
 static inline double mesh_volume(const struct mesh *mesh, int32_t i) {
   const double h = mesh->h[i];
+  if (mesh_is_axisymmetric(mesh)) return MESH_TURN * mesh->x[i][0] * h * h;
   return DIM == 2 ? h * h : h * h * h;
 }
 
@@ -146,14 +168,15 @@ static inline double mesh_width(const struct mesh *mesh, int32_t i) {
   return mesh->h[i];
 }
 
-/* Return the area of a side of leaf i, m^2 (in 2D m). */
+/* Return the area of a side of leaf i, m^2 (in a plane m). */
 static inline double mesh_side_area(const struct mesh *mesh, int32_t i) {
   return mesh_volume(mesh, i) / mesh_width(mesh, i);
 }
 
-/* Return the area of face f < nfaces, m^2 (in 2D m). */
+/* Return the area of face f < nfaces, m^2 (in a plane m). */
 static inline double mesh_face_area(const struct mesh *mesh, int32_t f) {
   const double h = mesh->face_h[f];
+  if (mesh_is_axisymmetric(mesh)) return MESH_TURN * mesh->face_radius[f] * h;
   return DIM == 2 ? h : h * h;
 }
 
@@ -161,7 +184,9 @@ static inline double mesh_face_area(const struct mesh *mesh, int32_t f) {
  * of leaf i, times the area that is open there, over A. */
 static inline double mesh_side(const struct mesh *mesh, const double *v,
                                int32_t i, int s) {
-  return v[mesh->cell_face[i][s]];
+  const double value = v[mesh->cell_face[i][s]];
+  if (s > 1 || !mesh_is_axisymmetric(mesh)) return value;
+  return (s ? 1 + mesh->slant[i] : 1 - mesh->slant[i]) * value;
 }
 
 /* Return the part of mesh_net along axis d. */
@@ -178,8 +203,8 @@ static inline double mesh_net(const struct mesh *mesh, const double *v,
   return net;
 }
 
-/* Return how much leaves leaf i: its outflow, in units of v times m^2 (2D m).
- */
+/* Return how much leaves leaf i: its outflow, in units of v times m^2 (in a
+ * plane m). */
 static inline double mesh_outflow(const struct mesh *mesh, const double *v,
                                   int32_t i) {
   return mesh_net(mesh, v, i) * mesh_side_area(mesh, i);
@@ -245,6 +270,47 @@ static inline double mesh_edges(const struct mesh *mesh, int32_t i,
 static inline double mesh_face_edges(const struct mesh *mesh, int32_t f,
                                      double length) {
   return length / mesh->face_h[f];
+}
+
+/* Return u_r/r in leaf i, D_tt of the radial velocity u; 0 in a plane. */
+static inline double mesh_hoop(const struct mesh *mesh, const double *u,
+                               int32_t i) {
+  return mesh_is_axisymmetric(mesh) ? u[i] / mesh->x[i][0] : 0;
+}
+
+/* Return u_r/r at face f < nfaces of axis d, the mean over its nodes, of the
+ * filled radial velocity u; axisymmetric only. Beyond the axis r < 0. */
+static inline double mesh_face_hoop(const struct mesh *mesh, const double *u,
+                                    int32_t f, int d) {
+  const int32_t *node = mesh->face_node[f];
+  const double r = mesh->face_radius[f];
+  const double half = d == 0 ? 0.5 * mesh->face_h[f] : 0;
+  return 0.5 * (u[node[0]] / (r - half) + u[node[1]] / (r + half));
+}
+
+/* Return the force of the hoop stress in leaf i, of the filled face array
+ * stress; axisymmetric only. */
+static inline double mesh_hoop_force(const struct mesh *mesh,
+                                     const double *stress, int32_t i) {
+  return -mesh_mean(mesh, stress, i) / mesh->x[i][0];
+}
+
+/* Return the slant of leaf or ghost i, 0 in a plane. */
+static inline double mesh_slant(const struct mesh *mesh, int32_t i) {
+  return mesh_is_axisymmetric(mesh) ? mesh->slant[i] : 0;
+}
+
+/* Return how deep, in edges of face f of axis d, the volume reaches that
+ * crosses it from `side` (0 lower, 1 upper) when everything there moves by
+ * `length` on the face: in rings as deep as their volume needs. */
+static inline double mesh_swept(const struct mesh *mesh, int32_t f, int d,
+                                int side, double length) {
+  const double edges = mesh_face_edges(mesh, f, length);
+  if (d > 0 || !mesh_is_axisymmetric(mesh)) return edges;
+  const double r = mesh_face_edges(mesh, f, mesh->face_radius[f]);
+  if (r == 0) return 0;
+  const double square = 1 + (side ? 2 : -2) * edges / r;
+  return fmin(2 * edges / (1 + sqrt(fmax(square, 0))), side ? HUGE_VAL : r);
 }
 
 /* Make the mesh of a forest, which must outlive it. Collective; the caller owns

@@ -18,6 +18,7 @@
  * each of x and y, through the lower side if the heap leans on it, else the
  * upper one, else through the centre of the heap; a direction in which the heap
  * leans on both sides does not count in the radius (a slice of a plane heap).
+ * Axisymmetric: the radius of the outer end; columns are rings.
  */
 #ifndef TALUS_OUTLINE_H
 #define TALUS_OUTLINE_H
@@ -31,6 +32,7 @@ struct outline {
   double first[2]; /* centre of the first column, m */
   double spacing;  /* Delta, m */
   double *height;  /* [n[1]][n[0]], m, owned */
+  bool rings;      /* columns are rings around an axis */
 };
 
 /* Return the vertical axis for this gravity. */

@@ -52,6 +52,10 @@ struct boundary {
   double fraction; /* volume fraction of grains carried in by an inflow */
 };
 
+/* Axisymmetric: x is the distance r from an axis and y lies along it, z in
+ * papers; nothing moves around it. */
+enum coordinates { COORDINATES_CARTESIAN, COORDINATES_AXISYMMETRIC };
+
 /* Where boundary.pressure_level holds, see pressure_level.h */
 enum pressure_at { PRESSURE_AT_BOX, PRESSURE_AT_GAS, PRESSURE_AT_POINT };
 
@@ -117,8 +121,9 @@ struct params {
   char name[256]; /* of the case, gives the output directory */
   char title[256];
   int dimension; /* 2 or 3 */
-  int model;     /* number in the list of models (src/models.c) */
-  void *own;     /* values of the model's own keys (key.h), or NULL */
+  enum coordinates coordinates;
+  int model; /* number in the list of models (src/models.c) */
+  void *own; /* values of the model's own keys (key.h), or NULL */
 
   /* Domain: a brick of trees, each a square or cube of edge `size`. */
   double size;
@@ -182,6 +187,10 @@ struct params {
   int series_every;        /* steps between rows of series.csv */
   double checkpoint_every; /* wall-clock seconds; 0: only at the end */
 };
+
+static inline bool params_axisymmetric(const struct params *params) {
+  return params->coordinates == COORDINATES_AXISYMMETRIC;
+}
 
 /* Does an inflow carry grains into the box? */
 static inline bool params_bring_grains(const struct params *params) {

@@ -22,9 +22,12 @@ extern const struct field_rule remap_average;
 /* Divided leaves lie on the unlimited slopes of the old one, so that the mean
  * is conserved; merged ones take the mean. */
 extern const struct field_rule remap_linear;
-/* Velocity on faces: the halves of a side take its value, inner faces lie
- * between the two sides, so that leaves stay solenoidal. */
+/* Values on faces: the halves of a side take its value, inner faces lie between
+ * the two sides, merged sides take the mean over their areas. */
 extern const struct field_rule remap_faces;
+/* Velocity on faces, likewise: leaves stay solenoidal, for which the velocity
+ * along r times r lies between the sides in r^2. */
+extern const struct field_rule remap_flux;
 
 /* Serve as parts of rules: return the value of the old leaf around a new one,
  * that on its slopes, and the mean of the old leaves in a new one. */
@@ -34,6 +37,15 @@ double remap_on_slopes(const struct remap *remap, const struct field *field,
                        int32_t leaf);
 double remap_mean(const struct remap *remap, const struct field *field,
                   int32_t leaf);
+/* Return the mean by volume, which keeps what the leaves contain; and the value
+ * on the slopes through the centre of the volume, whose sum over the parts of a
+ * leaf is what it contained. Both differ from the above in rings only. */
+double remap_content(const struct remap *remap, const struct field *field,
+                     int32_t leaf);
+double remap_on_ring_slopes(const struct remap *remap,
+                            const struct field *field, int32_t leaf);
+/* Return the volume of old leaf `child` over the mean of those in a new one. */
+double remap_weight(const struct remap *remap, int32_t leaf, int32_t child);
 /* Give the corners of a new leaf in the old leaf i around it, whose edge is 1
  * and centre 0; returns i. */
 int32_t remap_box(const struct remap *remap, int32_t leaf, double lo[DIM],

@@ -50,5 +50,9 @@ typedef double (*shape_level_set)(void *context, const double x[3]);
  */
 double shape_fraction(shape_level_set f, void *context,
                       const double centre[DIM], double h, int depth);
+/* Return the same of a ring, whose volume counts: centre[0] > 0 is its radius,
+ * and f does not depend on the angle around the axis. */
+double shape_ring_fraction(shape_level_set f, void *context,
+                           const double centre[DIM], double h, int depth);
 
 #endif

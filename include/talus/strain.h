@@ -3,6 +3,7 @@
  * the two nodes of a face, tangential ones the mean of central differences at
  * both, one-sided beside the surface of the grains (skin.h). The stress of
  * viscous.h is made of the same differences.
+ * In rings around an axis D_tt = u_r/r is the mean over both nodes.
  */
 #ifndef TALUS_STRAIN_H
 #define TALUS_STRAIN_H
@@ -11,34 +12,41 @@
 #include "talus/skin.h"
 
 /* Rows of a symmetric tensor without trace, T, at a face of axis d:
- *   T[d] T_dd, T[e] T_de for the other axes e, and in 3D, t and w being the
- *   axes after d in a circle, T[3] T_tt and T[4] T_tw; T_ww = -(T_dd + T_tt).
+ *   T[d] T_dd, T[e] T_de for the other axes e; in 3D, t and w being the axes
+ *   after d in a circle, T[3] T_tt and T[4] T_tw, T_ww = -(T_dd + T_tt); and in
+ *   rings T[STRAIN_HOOP] T_tt, t around the axis.
  */
-enum { STRAIN_ROWS = DIM == 2 ? 2 : 5 };
+enum { STRAIN_ROWS = DIM == 2 ? 3 : 5, STRAIN_HOOP = 2 };
 
-/* Give T:T/2 of the rows at face f of axis d. */
-static inline double strain_norm_squared(double *const rows[STRAIN_ROWS], int d,
-                                         int32_t f) {
+/* Return how many rows a tensor has on a mesh. */
+static inline int strain_rows(const struct mesh *mesh) {
+  return DIM == 2 && !mesh_is_axisymmetric(mesh) ? DIM : STRAIN_ROWS;
+}
+
+/* Give T:T/2 of n rows at face f of axis d. */
+static inline double strain_norm_squared(int n, double *const rows[STRAIN_ROWS],
+                                         int d, int32_t f) {
   double sum = 0;
   for (int e = 0; e < DIM; e++) {
     if (e != d) sum += rows[e][f] * rows[e][f];
   }
-  if (DIM == 2) return sum + rows[d][f] * rows[d][f];
-  const double n = rows[d][f], t = rows[STRAIN_ROWS - 2][f];
-  const double tw = rows[STRAIN_ROWS - 1][f];
-  return sum + tw * tw + n * n + t * t + n * t;
+  if (n == DIM) return sum + rows[d][f] * rows[d][f];
+  const double a = rows[d][f];
+  const double t = rows[DIM == 2 ? STRAIN_HOOP : STRAIN_ROWS - 2][f];
+  const double tw = DIM == 2 ? 0 : rows[STRAIN_ROWS - 1][f];
+  return sum + tw * tw + a * a + t * t + a * t;
 }
 
 /* shear_f [nfaces] = sqrt(2 D:D) on our own faces; skin: of the mesh, or NULL;
  * u[e] filled. */
 void strain_shear_rate(const struct mesh *mesh, const struct skin *skin,
                        double *const u[DIM], double *shear_f);
-/* rows [STRAIN_ROWS][nfaces_all]: D, 1/s. Collective. */
+/* rows [strain_rows][nfaces_all]: D, 1/s. Collective. */
 void strain_find(const struct mesh *mesh, const struct skin *skin,
                  double *const u[DIM], double *const rows[STRAIN_ROWS]);
 /* force[e] [nleaves] = (div s)_e, N/m^3, of a stress s [nfaces_all], Pa, whose
- * first DIM rows are filled. */
-void strain_divergence(const struct mesh *mesh, double *const s[DIM],
+ * first DIM rows, and in rings the hoop, are filled. */
+void strain_divergence(const struct mesh *mesh, double *const s[],
                        double *const force[DIM]);
 
 #endif

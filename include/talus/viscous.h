@@ -11,6 +11,10 @@
  *   tau_de = eta [(u_e1 - u_e0) / h + du_d/dx_e],   e != d
  *   div u  = (u_d1 - u_d0) / h + sum of du_e/dx_e over e != d
  *
+ * In rings around an axis div u has u_r/r besides, the mean over both nodes,
+ * and tau_tt = 2 eta u_r/r + lambda div u   pulls with - tau_tt/r, the mean
+ * over the sides of a leaf.
+ *
  * Derivatives along the face are the mean over both nodes of the central
  * difference, read from the stencil of face_owner. Each flux is computed once,
  * coarse sides take the mean: momentum balances to round-off. Linear velocities

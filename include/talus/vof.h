@@ -12,6 +12,12 @@
  * for 1/2 sum |u_f| A dt / V <= 1/2. Beyond that bound a leaf in which the flow
  * is compressed along one axis may come out too full or too empty (vof_excess).
  *
+ * In rings around an axis (mesh.h) planes lie in (r, z), c and F are parts of
+ * the volumes that they sweep around it (ring.h), and what a radial face lets
+ * through is as deep as its volume asks for: so c stays in [0, 1] at the axis
+ * too, where half of a leaf's area is a quarter or three quarters of its
+ * volume.
+ *
  * c lives in cells; normals and alpha in leaves and ghosts, in units of the
  * leaf (plane.h); F on faces, m/s.
  */
@@ -40,6 +46,11 @@ void vof_reconstruct(const struct mesh *mesh, const double *c,
  * for a plane surface. */
 void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
                double n[DIM], double *alpha);
+
+/* Return the part of the box lo <= x <= hi of a leaf, in its edges from its
+ * centre, with n.x <= alpha, by volume. */
+double vof_part(const struct mesh *mesh, int32_t leaf, const double n[DIM],
+                double alpha, const double lo[DIM], const double hi[DIM]);
 
 /* Find the fluxes F of c through the faces of axis d; flux [nfaces_all] is
  * valid on all of them afterwards. u_f [nfaces_all], m/s; c filled. open

@@ -263,6 +263,7 @@ void build_params(struct case_file *file) {
   check_yield(file);
   check_grid(file);
   check_origin(file);
+  coordinates_check(file);
   boundary_check(file);
   if (keys_find(model_of(file), "boundary.pressure_level") != NULL)
     pressure_check(file);

@@ -185,6 +185,8 @@ bool closure_depends_on_pressure(const struct rheology *rheology);
 void boundary_read_side(struct case_file *file, const struct key *key);
 void boundary_read_patches(struct case_file *file);
 void boundary_check(struct case_file *file);
+/* Refuse what does not go with the coordinates; boundaries have been read. */
+void coordinates_check(struct case_file *file);
 
 /* patches.c */
 

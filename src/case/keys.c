@@ -9,6 +9,8 @@
 
 #define AT(member) offsetof(struct params, member)
 #define SOME_LEVEL .low = 0, .high = CASE_MAX_LEVEL_2D
+/* enum coordinates */
+static const char *const COORDINATES[] = {"cartesian", "axisymmetric", NULL};
 /* enum criterion_phase */
 static const char *const PHASES[] = {"both", "grains", "gas", NULL};
 
@@ -24,6 +26,10 @@ static const struct key KEYS[] = {
      .help = "one line that says what the case is about"},
     {"dimension", KEY_INTEGER, .low = 2, .high = 3, KEY_NEEDED, .unit = "",
      .offset = AT(dimension), .help = "2 or 3"},
+    {"coordinates", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "cartesian", .unit = "",
+     .offset = AT(coordinates), .choices = COORDINATES,
+     .help = "axisymmetric: x is the distance from an axis, y lies along it; "
+             "2D, without swirl"},
 
     {"model", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "two_phase", .unit = "",
      .offset = AT(model), .choices = models_names,
@@ -209,6 +215,18 @@ bool keys_takes(const struct model_keys *model, const char *path) {
     if (same && (path[n] == '\0' || path[n] == '.')) return false;
   }
   return true;
+}
+
+const char *keys_meant(const char *word) {
+  static const struct {
+    const char *word, *key;
+  } MEANT[] = {{"axisymmetric", "coordinates = \"axisymmetric\""},
+               {"axisymmetry", "coordinates = \"axisymmetric\""},
+               {"axi", "coordinates = \"axisymmetric\""},
+               {"cylindrical", "coordinates = \"axisymmetric\""}};
+  for (size_t k = 0; k < sizeof MEANT / sizeof *MEANT; k++)
+    if (strcmp(MEANT[k].word, word) == 0) return MEANT[k].key;
+  return NULL;
 }
 
 const struct key *keys_find(const struct model_keys *model, const char *path) {

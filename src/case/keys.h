@@ -15,6 +15,9 @@
 const struct key *keys_get(const struct model_keys *model, int i);
 /* Does the model take a key of this path, if it is known? */
 bool keys_takes(const struct model_keys *model, const char *path);
+/* Return what is meant by a word that is no key, as it is to be written; NULL:
+ * nothing that is known. */
+const char *keys_meant(const char *word);
 /* Find the key of this path; NULL: the model has none. */
 const struct key *keys_find(const struct model_keys *model, const char *path);
 

@@ -97,6 +97,10 @@ static _Noreturn void fail_unknown(struct case_file *file, const char *path,
                  "%s = %s is a key of model = \"%s\", and the case is of model "
                  "= \"%s\": take the key out, or the other model",
                  inner, value, other, models_names[file->params.model]);
+  const char *meant = *path ? NULL : keys_meant(word);
+  if (meant != NULL)
+    read_fail_at(file, inner, "unknown key %s = %s; did you mean %s?", inner,
+                 value, meant);
   read_suggest(word, n, names, sizeof known, known);
   read_fail_at(file, inner, "unknown key %s = %s%s", inner, value, known);
 }

@@ -8,6 +8,31 @@
 #include "talus/minmax.h"
 #include "talus/plane.h"
 #include "talus/remap.h"
+#include "talus/ring.h"
+
+/* Turn volume fractions of rings, [NSTENCIL], into those of the cells that they
+ * have in the plane of r and z, for a surface with the normal n. */
+static void flatten(const struct mesh *mesh, int32_t leaf, const double n[DIM],
+                    const double ring[], double flat[]) {
+  for (int s = 0; s < NSTENCIL; s++) {
+    const double r = mesh->x[leaf][0] + (s % 3 - 1) * mesh->h[leaf];
+    const double alpha = ring_alpha(n, ring[s], 0.5 * mesh->h[leaf] / r);
+    flat[s] = vof_is_cut(ring[s]) ? plane_volume(n, alpha) : ring[s];
+  }
+}
+
+/* Find the normal in a ring: the fractions of its cells are known once it is.
+ */
+static void ring_normal(const struct mesh *mesh, int32_t leaf,
+                        const double ring[NSTENCIL], const bool known[NSTENCIL],
+                        double n[DIM]) {
+  enum { REPETITIONS = 2 };
+  double flat[NSTENCIL];
+  for (int k = 0; k < REPETITIONS; k++) {
+    flatten(mesh, leaf, n, ring, flat);
+    plane_normal(flat, known, n);
+  }
+}
 
 void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
                double n[DIM], double *alpha) {
@@ -19,7 +44,13 @@ void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
     known[s] = node < mesh->begin_virtual;
   }
   plane_normal(stencil, known, n);
-  *alpha = plane_alpha(n, stencil[STENCIL_CENTRE]);
+  if (mesh_is_axisymmetric(mesh)) ring_normal(mesh, leaf, stencil, known, n);
+  *alpha = ring_alpha(n, stencil[STENCIL_CENTRE], mesh_slant(mesh, leaf));
+}
+
+double vof_part(const struct mesh *mesh, int32_t leaf, const double n[DIM],
+                double alpha, const double lo[DIM], const double hi[DIM]) {
+  return ring_box_volume(n, alpha, lo, hi, mesh_slant(mesh, leaf));
 }
 
 void vof_reconstruct(const struct mesh *mesh, const double *c,
@@ -36,8 +67,8 @@ void vof_reconstruct(const struct mesh *mesh, const double *c,
   mesh_fill_ghosts(mesh, DIM + 1, v);
 }
 
-/* Return the fraction of the volume swept through a face, |u| dt / h_face =
- * swept, that the plane of the upwind leaf fills. The leaf may be twice as
+/* Return the fraction of the volume swept through a face, `swept` edges of it
+ * deep, that the plane of the upwind leaf fills. The leaf may be twice as
  * large as the face: then the face's part of it is one of its children. */
 static double swept_fraction(const struct mesh *mesh, int d, int32_t face,
                              int upwind, double swept,
@@ -61,7 +92,7 @@ static double swept_fraction(const struct mesh *mesh, int d, int32_t face,
   } else {
     hi[d] = lo[d] + swept;
   }
-  return plane_box_volume(n, alpha[leaf], lo, hi);
+  return vof_part(mesh, leaf, n, alpha[leaf], lo, hi);
 }
 
 void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
@@ -79,9 +110,9 @@ void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
     } else if (!vof_is_cut(c[leaf]) || u == 0) {
       fraction = c[leaf];
     } else {
-      fraction =
-          swept_fraction(mesh, d, f, upwind,
-                         mesh_face_edges(mesh, f, fabs(u) * dt), normal, alpha);
+      fraction = swept_fraction(mesh, d, f, upwind,
+                                mesh_swept(mesh, f, d, upwind, fabs(u) * dt),
+                                normal, alpha);
     }
     flux[f] = u * fraction;
   }
@@ -117,7 +148,7 @@ static double divide(const struct remap *remap, const struct field *field,
   const int32_t i = remap_box(remap, leaf, lo, hi);
   if (!vof_is_cut(field->v[i])) return field->v[i];
   vof_plane(remap->mesh, field->v, i, n, &alpha);
-  return plane_box_volume(n, alpha, lo, hi);
+  return vof_part(remap->mesh, i, n, alpha, lo, hi);
 }
 
-const struct field_rule vof_rule = {divide, remap_mean};
+const struct field_rule vof_rule = {divide, remap_content};

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "talus/minmax.h"
-#include "talus/plane.h"
+#include "talus/ring.h"
 
 enum { NVERTEX = 1 << DIM, NLATTICE = DIM == 2 ? 9 : 27 };
 
@@ -20,6 +20,7 @@ struct piece {
 struct shape {
   shape_level_set f;
   void *context;
+  bool rings; /* x[0] is a radius */
 };
 
 /* Evaluate f times a power of two, which changes no fraction, so that sums of
@@ -50,8 +51,13 @@ static int common_sign(const struct piece *p, double tolerance) {
   return sign;
 }
 
+/* Return the slant (ring.h) of a piece, 0 in a plane. */
+static double slant(const struct shape *shape, const struct piece *p) {
+  return shape->rings ? 0.5 * p->h / p->x[0] : 0;
+}
+
 /* Return the fraction of the smallest piece, which is not halved any more. */
-static double cut_piece(const struct piece *p) {
+static double cut_piece(const struct shape *shape, const struct piece *p) {
   double mean = 0., n[DIM], norm = 0., residual = 0.;
   for (int v = 0; v < NVERTEX; v++) mean += p->vertex[v] / NVERTEX;
   for (int d = 0; d < DIM; d++) {
@@ -72,7 +78,7 @@ static double cut_piece(const struct piece *p) {
   int sign = common_sign(p, tolerance);
   if (sign && (residual > tolerance || norm <= 0.)) return sign > 0 ? 1. : 0.;
   if (norm <= 0.) return alpha > 0. ? 1. : alpha < 0. ? 0. : 0.5;
-  return plane_volume(n, alpha);
+  return ring_volume(n, alpha, slant(shape, p));
 }
 
 /* Fill the level set on the lattice of half-edges: lattice[i + 3 j + 9 k] lies
@@ -117,26 +123,38 @@ static double piece_fraction(const struct shape *shape, const struct piece *p,
                              int depth) {
   int sign = common_sign(p, 0.);
   if (sign && fabs(p->centre) > 1.5 * variation(p)) return sign > 0 ? 1. : 0.;
-  if (depth <= 0) return cut_piece(p);
+  if (depth <= 0) return cut_piece(shape, p);
   double lattice[NLATTICE], sum = 0.;
   fill_lattice(shape, p, lattice);
   for (int child = 0; child < NVERTEX; child++) {
     struct piece q = half(shape, p, lattice, child);
-    sum += piece_fraction(shape, &q, depth - 1);
+    const double part = piece_fraction(shape, &q, depth - 1);
+    sum += shape->rings ? q.x[0] / p->x[0] * part : part;
   }
   return sum / NVERTEX;
 }
 
-double shape_fraction(shape_level_set f, void *context,
-                      const double centre[DIM], double h, int depth) {
-  struct shape shape = {f, context};
+static double fraction(const struct shape *shape, const double centre[DIM],
+                       double h, int depth) {
   struct piece p = {.h = h};
   for (int d = 0; d < DIM; d++) p.x[d] = centre[d];
   for (int v = 0; v < NVERTEX; v++) {
     double x[DIM];
     for (int d = 0; d < DIM; d++) x[d] = centre[d] + 0.5 * side(v, d) * h;
-    p.vertex[v] = evaluate(&shape, x);
+    p.vertex[v] = evaluate(shape, x);
   }
-  p.centre = evaluate(&shape, centre);
-  return piece_fraction(&shape, &p, depth);
+  p.centre = evaluate(shape, centre);
+  return piece_fraction(shape, &p, depth);
+}
+
+double shape_fraction(shape_level_set f, void *context,
+                      const double centre[DIM], double h, int depth) {
+  const struct shape shape = {f, context, false};
+  return fraction(&shape, centre, h, depth);
+}
+
+double shape_ring_fraction(shape_level_set f, void *context,
+                           const double centre[DIM], double h, int depth) {
+  const struct shape shape = {f, context, true};
+  return fraction(&shape, centre, h, depth);
 }

@@ -13,6 +13,7 @@
 void grid_layout(const struct params *params, struct forest_layout *layout) {
   memset(layout, 0, sizeof *layout);
   layout->size = params->size;
+  layout->axisymmetric = params_axisymmetric(params);
   for (int d = 0; d < DIM; d++) {
     layout->origin[d] = params->origin[d];
     layout->trees[d] = params->trees[d];

@@ -57,6 +57,34 @@ double remap_mean(const struct remap *remap, const struct field *field,
   return sum / count;
 }
 
+double remap_weight(const struct remap *remap, int32_t leaf, int32_t child) {
+  const struct mesh *mesh = remap->mesh;
+  if (!mesh_is_axisymmetric(mesh)) return 1;
+  return mesh->x[child][0] / remap->map->x[leaf][0];
+}
+
+double remap_on_ring_slopes(const struct remap *remap,
+                            const struct field *field, int32_t leaf) {
+  const struct mesh *mesh = remap->mesh;
+  const int32_t i = remap->map->first[leaf];
+  const double value = remap_on_slopes(remap, field, leaf);
+  if (!mesh_is_axisymmetric(mesh)) return value;
+  const double parts = pow(0.25, remap->map->delta[leaf]);
+  const double centre = mesh->slant[i] / 6 * (1 - parts); /* of the volume */
+  return value - centre * slope_along(mesh, field->v, i, 0);
+}
+
+double remap_content(const struct remap *remap, const struct field *field,
+                     int32_t leaf) {
+  const int32_t first = remap->map->first[leaf];
+  const int32_t count = remap->map->count[leaf];
+  double sum = 0;
+  for (int32_t i = first; i < first + count; i++) {
+    sum += remap_weight(remap, leaf, i) * field->v[i];
+  }
+  return sum / count;
+}
+
 int32_t remap_box(const struct remap *remap, int32_t leaf, double lo[DIM],
                   double hi[DIM]) {
   const struct mesh *mesh = remap->mesh;
@@ -73,6 +101,7 @@ int32_t remap_box(const struct remap *remap, int32_t leaf, double lo[DIM],
 const struct field_rule remap_average = {remap_value, remap_mean};
 const struct field_rule remap_linear = {remap_on_slopes, remap_mean};
 const struct field_rule remap_faces = {NULL, NULL};
+const struct field_rule remap_flux = {NULL, NULL};
 
 static double *carry_cells(const struct remap *remap,
                            const struct field *field) {
@@ -90,10 +119,25 @@ static double *carry_cells(const struct remap *remap,
   return out;
 }
 
+/* Interpolate between the two sides of axis d of leaf i, a and b, at the part t
+ * of the way. A flux is linear along z and, times r, in r^2 along r: what
+ * leaves every part of the leaf is then its share. */
+static double between(const struct mesh *mesh, int d, bool is_flux, int32_t i,
+                      double t, double a, double b) {
+  if (d > 0 || !is_flux || !mesh_is_axisymmetric(mesh)) {
+    return (1 - t) * a + t * b;
+  }
+  const double r = mesh->x[i][0], half = 0.5 * mesh->h[i];
+  const double low = r - half, high = r + half, at = low + 2 * t * half;
+  const double share = (at * at - low * low) / (high * high - low * low);
+  return at > 0 ? ((1 - share) * low * a + share * high * b) / at : a;
+}
+
 /* Carry side f to every new leaf: the old value, the mean of the children's, or
  * interpolated between the parent's two sides, which keeps the children
  * solenoidal. */
-static double *carry_side(const struct remap *remap, const double *v, int f) {
+static double *carry_side(const struct remap *remap, const double *v, int f,
+                          bool is_flux) {
   const struct forest_map *map = remap->map;
   const struct mesh *mesh = remap->mesh;
   const int d = f >> 1, side = f & 1;
@@ -103,7 +147,9 @@ static double *carry_side(const struct remap *remap, const double *v, int f) {
     const int32_t *face = mesh->cell_face[first];
     if (map->count[i] > 1) {
       for (int c = 0; c < NCHILD; c++) {
-        if ((c >> d & 1) == side) out[i] += v[mesh->cell_face[first + c][f]];
+        if ((c >> d & 1) != side) continue;
+        const double weight = d > 0 ? remap_weight(remap, i, first + c) : 1;
+        out[i] += weight * v[mesh->cell_face[first + c][f]];
       }
       out[i] /= NCHILD / 2;
     } else if (map->delta[i] > 0) {
@@ -111,7 +157,8 @@ static double *carry_side(const struct remap *remap, const double *v, int f) {
       const double away = map->x[i][d] - mesh->x[first][d];
       const double t =
           mesh_edges(mesh, first, away) + 0.5 + (side ? 0.5 * h : -0.5 * h);
-      out[i] = (1 - t) * v[face[2 * d]] + t * v[face[2 * d + 1]];
+      out[i] = between(mesh, d, is_flux, first, t, v[face[2 * d]],
+                       v[face[2 * d + 1]]);
     } else {
       out[i] = v[face[f]];
     }
@@ -157,7 +204,7 @@ void remap_fields(struct grid *grid, const struct forest_map *map) {
     } else {
       field_fill_faces(grid->mesh, field);
       for (int f = 0; f < NFACE; f++) {
-        data[n++] = carry_side(&remap, field->v, f);
+        data[n++] = carry_side(&remap, field->v, f, field->rule == &remap_flux);
       }
       data[n] = MEM_NEW(double, map->nnew);
       for (int32_t i = 0; i < map->nnew; i++) data[n][i] = map->delta[i] > 0;

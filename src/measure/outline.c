@@ -53,6 +53,9 @@ static void add_leaf(const struct mesh *mesh, const int horizontal[2],
     begin[k] = (int)floor(place + 0.5 * min2(width, 1));
     end[k] = begin[k] + (width > 1 ? (int)lround(width) : 1);
     height *= min2(width, 1);
+    if (outline->rings && width < 1) /* a share of a wider ring */
+      height *=
+          mesh->x[i][0] / (outline->first[0] + begin[0] * outline->spacing);
   }
   for (int b = begin[1]; b < end[1]; b++)
     for (int a = begin[0]; a < end[0]; a++)
@@ -67,6 +70,7 @@ void outline_measure(const struct mesh *mesh, const double *c, const bool *heap,
     if (d != axis) horizontal[k++] = d;
   int level = column_level(mesh, horizontal);
   *outline = (struct outline){.n = {1, 1}};
+  outline->rings = mesh_is_axisymmetric(mesh);
   outline->spacing = ldexp(layout->size, -level);
   for (int k = 0; k < DIM - 1; k++) {
     outline->n[k] = layout->trees[horizontal[k]] << level;
@@ -121,6 +125,7 @@ static double front_2d(const struct outline *o) {
   const double threshold = end_height(o, h[start]);
   if (h[start] <= 0) return o->first[0] - 0.5 * o->spacing;
   double upper = walk(n, h, threshold, start, 1);
+  if (o->rings) return o->first[0] + o->spacing * upper;
   double lower = walk(n, h, threshold, start, -1);
   double mass = 0, moment = 0;
   for (int k = 0; k < n; k++) {

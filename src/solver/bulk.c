@@ -17,10 +17,11 @@ static void set_leaves(struct hierarchy *h, const double *eta_f,
                        const double *kappa_f, double factor) {
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
+    const int32_t s = h->leaf_slot[i];
     const double ratio = conductance(mesh, i, factor);
     for (int f = 0; f < NFACE; f++) {
-      const double lambda = kappa_f[face[f]] - 2. / 3 * eta_f[face[f]];
+      const double lambda = mesh_side(mesh, kappa_f, i, f) -
+                            2. / 3 * mesh_side(mesh, eta_f, i, f);
       h->bulk[f][s] = (float)(ratio * lambda);
     }
   }

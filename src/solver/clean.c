@@ -15,6 +15,7 @@
 #include "talus/forest.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
+#include "talus/morton.h"
 
 struct clean {
   uint64_t revision;
@@ -22,6 +23,7 @@ struct clean {
   int32_t (*child)[NCHILD]; /* [ninner] nodes, -1: on another rank */
   int8_t *level;            /* [ninner] */
   uint64_t *key;            /* [ninner] */
+  double *slant;            /* [ninner] of rings (mesh.h), NULL in a plane */
   int32_t *slot;            /* [ninner] place in `shared`, -1: all ours */
   int32_t *root;            /* [ntrees] node, -1: on another rank */
   int32_t ntrees;
@@ -139,6 +141,19 @@ static void number_trees(struct clean *clean, const struct mesh *mesh) {
                           MPI_INT32_T, MPI_MAX, mesh->comm));
 }
 
+static void set_slants(struct clean *clean, const struct mesh *mesh) {
+  const struct forest_layout *layout = forest_layout(mesh->forest);
+  const double unit = layout->size / (double)morton_edge(0);
+  if (!mesh_is_axisymmetric(mesh)) return;
+  clean->slant = MEM_NEW(double, clean->ninner);
+  for (int32_t k = 0; k < clean->ninner; k++) {
+    int64_t x[DIM];
+    const double half = 0.5 * unit * (double)morton_edge(clean->level[k]);
+    morton_coordinates(forest_brick(mesh->forest), clean->key[k], x);
+    clean->slant[k] = half / (layout->origin[0] + unit * (double)x[0] + half);
+  }
+}
+
 static void mark_owned(struct clean *clean, const struct mesh *mesh) {
   clean->owned = MEM_NEW(uint8_t, mesh->nleaves);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -169,6 +184,7 @@ struct clean *clean_new(const struct mesh *mesh) {
   number_trees(clean, mesh);
   link_nodes(clean, mesh);
   mark_straddling(clean, mesh);
+  set_slants(clean, mesh);
   mark_owned(clean, mesh);
   list_boundary(clean, mesh);
   const size_t n = (size_t)mesh->nleaves + (size_t)clean->ninner;
@@ -179,13 +195,11 @@ struct clean *clean_new(const struct mesh *mesh) {
 
 void clean_destroy(struct clean *clean) {
   if (!clean) return;
-  void *owned[] = {clean->child,       clean->level,
-                   clean->key,         clean->slot,
-                   clean->root,        clean->tree_number,
-                   clean->owned,       clean->boundary,
-                   clean->shared,      clean->net,
-                   clean->change,      clean->tree_net,
-                   clean->tree_change, clean};
+  void *owned[] = {clean->child,       clean->level,       clean->slant,
+                   clean->key,         clean->slot,        clean->root,
+                   clean->tree_number, clean->owned,       clean->boundary,
+                   clean->shared,      clean->net,         clean->change,
+                   clean->tree_net,    clean->tree_change, clean};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
 }
 
@@ -324,6 +338,12 @@ static void tell_node(struct clean *clean, const struct mesh *mesh,
   }
 }
 
+/* Return the part that child c has of face f of node k. */
+static double face_part(const struct clean *clean, int32_t k, int c, int f) {
+  if (!clean->slant || f >> 1 == 0) return 1. / (NCHILD / 2);
+  return 0.5 + (c & 1 ? 0.25 : -0.25) * clean->slant[k];
+}
+
 static void treat_node(struct clean *clean, const struct mesh *mesh, int32_t k,
                        double *u_f) {
   double net[NCHILD], change[NCHILD][NFACE];
@@ -334,7 +354,7 @@ static void treat_node(struct clean *clean, const struct mesh *mesh, int32_t k,
                                  : clean->net[child];
     for (int f = 0; f < NFACE; f++) {
       if ((c >> (f >> 1) & 1) != (f & 1)) continue; /* an inner face */
-      change[c][f] = above[f] / (NCHILD / 2);
+      change[c][f] = above[f] * face_part(clean, k, c, f);
       net[c] += f & 1 ? change[c][f] : -change[c][f];
     }
   }

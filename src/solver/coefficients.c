@@ -35,10 +35,10 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
                        double *mass) {
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
+    const int32_t s = h->leaf_slot[i];
     const double ratio = conductance(mesh, i, factor);
     for (int f = 0; f < NFACE; f++) {
-      h->w[f][s] = (float)(ratio * alpha_f[face[f]]);
+      h->w[f][s] = (float)(ratio * mesh_side(mesh, alpha_f, i, f));
     }
     mass[s] = mass_density ? mass_density[i] * mesh_volume(mesh, i) : 0;
   }
@@ -133,6 +133,36 @@ static void merge_jumping_masses(struct hierarchy *h, int l, double *mass) {
       sum += given_mass(h, mass, family_slot(level, k, c), least);
     }
     mass[parent[k]] = sum;
+  }
+}
+
+/* Set the hoop stress of leaves that move outward at r, over r: 2 alpha V / r,
+ * whose sum is that of a merged node. Returns NULL in a plane. */
+static double *set_hoops(struct hierarchy *h, const double *alpha_f,
+                         double factor) {
+  const struct mesh *mesh = h->mesh;
+  if (!mesh_is_axisymmetric(mesh) || h->nparts == 1) return NULL;
+  double *hoop = h->e[1]; /* free for now */
+  memset(hoop, 0, (size_t)h->nslots * sizeof *hoop);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    hoop[h->leaf_slot[i]] = 2 * factor * mesh_mean(mesh, alpha_f, i) *
+                            mesh_volume(mesh, i) / mesh->x[i][0];
+  }
+  return hoop;
+}
+
+/* Merge the hoop stresses of level l, NULL: none. */
+static void merge_hoops(struct hierarchy *h, int l, double *hoop) {
+  if (!hoop) return;
+  plan_run(&h->level[l].add, 1, &hoop, 1, true);
+  merge_masses(h, l, hoop);
+}
+
+/* Add the hoop stresses to the diagonal of the radial velocity. */
+static void add_hoops(const struct hierarchy *h, const double *hoop,
+                      double *diagonal) {
+  for (int32_t i = 0; i < h->nowned && hoop; i++) {
+    diagonal[i] += hoop[i] / h->radius[i];
   }
 }
 
@@ -234,10 +264,12 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
   }
   if (h->nranks > 1) memset(mass, 0, size);
   set_leaves(h, alpha_f, factor, mass_density, mass);
+  double *hoop = set_hoops(h, alpha_f, factor);
   for (int l = h->nlevels - 1; l >= 0; l--) {
     add_ghosts(h, l, mass);
     set_walls(h, l, bc, wall);
     merge_sides(h, l);
+    merge_hoops(h, l, hoop);
     if (h->has_mass && h->nparts == 1) {
       merge_jumping_masses(h, l, mass);
     } else {
@@ -245,6 +277,7 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
     }
   }
   clear_sides(h);
+  add_hoops(h, hoop, wall[0]);
   set_inverse(h, mass, wall);
   set_beyond(h, bc);
   set_weights(h);

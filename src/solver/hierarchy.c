@@ -216,8 +216,9 @@ static int64_t nvalues(const struct hierarchy *h) {
 static int64_t arena_length(const struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
   const int64_t inner = nvalues(h) + h->nslots;
-  const int64_t outer = (int64_t)mesh->ncells + mesh->nfaces_all;
-  return DIM * (inner > outer ? inner : outer);
+  const int64_t hoop = mesh_is_axisymmetric(mesh) ? mesh->nfaces_all : 0;
+  const int64_t outer = DIM * ((int64_t)mesh->ncells + mesh->nfaces_all) + hoop;
+  return DIM * inner > outer ? DIM * inner : outer;
 }
 
 static void allocate(struct hierarchy *h) {
@@ -238,6 +239,33 @@ static void allocate(struct hierarchy *h) {
   h->residual = MEM_NEW(double, nleaves);
   h->weight = MEM_NEW(float, nleaves);
   h->krylov = krylov_space_new();
+}
+
+/* Return the radius of the node of a level at `key`. */
+static double radius_at(const struct linking *k, int l, uint64_t key) {
+  const double unit = k->layout->size / (double)morton_edge(0);
+  int64_t x[DIM];
+  morton_coordinates(k->brick, key, x);
+  return k->layout->origin[0] +
+         unit * ((double)x[0] + 0.5 * (double)morton_edge(l));
+}
+
+static void set_radii(struct linking *k) {
+  struct hierarchy *h = k->h;
+  h->radius = MEM_NEW(double, h->nowned);
+  for (int32_t i = 0; i < h->level[0].nowned; i++) {
+    h->radius[i] = radius_at(k, 0, (uint64_t)i << MORTON_BITS);
+  }
+  for (int l = 1; l < h->nlevels; l++) {
+    const struct level *level = &h->level[l];
+    for (int32_t n = 0; n < level->nfamilies; n++) {
+      for (int c = 0; c < NCHILD; c++) {
+        const uint64_t offset = (uint64_t)c * morton_span(l);
+        h->radius[family_slot(level, n, c)] =
+            radius_at(k, l, k->parent_key[l][n] + offset);
+      }
+    }
+  }
 }
 
 struct hierarchy *hierarchy_new(const struct mesh *mesh) {
@@ -274,6 +302,7 @@ struct hierarchy *hierarchy_new(const struct mesh *mesh) {
   divide_sides(h);
   mirrors_make(&k);
   allocate(h);
+  if (mesh_is_axisymmetric(mesh)) set_radii(&k);
   for (int l = 0; l < h->nlevels; l++) mem_free(k.parent_key[l]);
   mem_free(k.parent_key);
   mem_free(k.slot_family);
@@ -298,12 +327,13 @@ void hierarchy_destroy(struct hierarchy *h) {
     plan_end(copy);
   }
   krylov_space_destroy(h->krylov);
-  void *owned[] = {
-      h->mirror,    h->sides,         h->beyond,       h->level,
-      h->leaf_slot, h->family_parent, h->wall,         h->jump,
-      h->coarse[0], h->coarse[1],     h->coarse[2],    h->arena,
-      h->residual,  h->weight,        h->rough,        h->rough_begin,
-      h->skin_node, h->skin_begin,    h->mirror_order, h->mirror_run};
+  void *owned[] = {h->mirror,     h->sides,        h->beyond,
+                   h->level,      h->leaf_slot,    h->family_parent,
+                   h->wall,       h->jump,         h->coarse[0],
+                   h->coarse[1],  h->coarse[2],    h->arena,
+                   h->radius,     h->residual,     h->weight,
+                   h->rough,      h->rough_begin,  h->skin_node,
+                   h->skin_begin, h->mirror_order, h->mirror_run};
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
   for (int f = 0; f < NFACE; f++) {
     mem_free(h->neighbour[f]);

@@ -126,6 +126,7 @@ struct hierarchy {
   double first_residual;       /* before the first of them, or the second */
   /* Value beyond a wall over that inside, [nlevels] */
   double (*beyond)[DIM][MESH_MAX_PATCHES];
+  double *radius;    /* [nowned] r of rings, NULL in a plane */
   double *coarse[3]; /* [trees] for conjugate gradients */
   /* Work of the outer solver. Cells and faces share the arena with e and r:
    * neither is needed while the other is in use */

@@ -56,6 +56,17 @@ static void skin_shear_squared(const struct mesh *mesh, const struct skin *skin,
   }
 }
 
+/* Add what the hoop has of 2 D:D. */
+static void add_hoop_squared(const struct mesh *mesh, double *const u[DIM],
+                             double *squared_f) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const double hoop = mesh_face_hoop(mesh, u[0], f, d);
+      squared_f[f] += 2 * hoop * hoop;
+    }
+  }
+}
+
 void strain_shear_rate(const struct mesh *mesh, const struct skin *skin,
                        double *const u[DIM], double *shear_f) {
 #pragma GCC unroll 3 /* so that d is known in the loop over faces */
@@ -67,6 +78,7 @@ void strain_shear_rate(const struct mesh *mesh, const struct skin *skin,
     }
   }
   if (skin) skin_shear_squared(mesh, skin, u, shear_f);
+  if (mesh_is_axisymmetric(mesh)) add_hoop_squared(mesh, u, shear_f);
   /* apart, several at a time: roots are slow */
   for (int32_t f = 0; f < mesh->nfaces; f++) shear_f[f] = sqrt(shear_f[f]);
 }
@@ -101,6 +113,9 @@ void strain_find(const struct mesh *mesh, const struct skin *skin,
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       face_gradient(mesh, d, f, u, grad);
       set_rows(grad, d, f, rows);
+      if (mesh_is_axisymmetric(mesh)) {
+        rows[STRAIN_HOOP][f] = mesh_face_hoop(mesh, u[0], f, d);
+      }
     }
   }
   for (int32_t k = 0; skin && k < skin->n; k++) {
@@ -111,14 +126,17 @@ void strain_find(const struct mesh *mesh, const struct skin *skin,
       if (e != face->axis) rows[e][face->face] *= face->part[e];
     }
   }
-  mesh_fill_faces(mesh, STRAIN_ROWS, rows);
+  mesh_fill_faces(mesh, strain_rows(mesh), rows);
 }
 
-void strain_divergence(const struct mesh *mesh, double *const s[DIM],
+void strain_divergence(const struct mesh *mesh, double *const s[],
                        double *const force[DIM]) {
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       force[e][i] = mesh_divergence(mesh, s[e], i);
     }
+  }
+  for (int32_t i = 0; i < mesh->nleaves && mesh_is_axisymmetric(mesh); i++) {
+    force[0][i] += mesh_hoop_force(mesh, s[STRAIN_HOOP], i);
   }
 }

@@ -8,6 +8,13 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 
+/* Number of the hoop stress, after those of force e on a face. */
+enum { HOOP = DIM };
+
+static int nstresses(const struct mesh *mesh) {
+  return mesh_is_axisymmetric(mesh) ? HOOP + 1 : DIM;
+}
+
 struct context {
   const struct mesh *mesh;
   struct hierarchy *h;
@@ -79,20 +86,36 @@ static double face_divergence(const struct mesh *mesh, double *const u[DIM],
   return sum;
 }
 
-/* Add (kappa - 2 eta / 3) div u to the normal stress. */
+/* Set the hoop stress around the axis. */
+static void hoop_stress(const struct mesh *mesh, const double *eta_f,
+                        const double *u_r, double *tau) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      tau[f] = 2 * eta_f[f] * mesh_face_hoop(mesh, u_r, f, d);
+    }
+  }
+}
+
+/* Add (kappa - 2 eta / 3) div u to the normal stresses. */
 static void add_bulk(const struct mesh *mesh, const struct viscosity *viscosity,
                      double *const u[DIM], double *const tau[DIM]) {
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const double lambda =
           viscosity->kappa_f[f] - 2. / 3 * viscosity->eta_f[f];
-      tau[d][f] += mesh_slope(mesh, f, lambda * face_divergence(mesh, u, d, f));
+      const double part =
+          mesh_slope(mesh, f, lambda * face_divergence(mesh, u, d, f));
+      tau[d][f] += part;
+      if (!mesh_is_axisymmetric(mesh)) continue;
+      const double hoop = lambda * mesh_face_hoop(mesh, u[0], f, d);
+      tau[d][f] += hoop, tau[HOOP][f] += part + hoop;
     }
   }
 }
 
+/* Set the stress on faces, filled; tau [nstresses]. */
 static void stress(const struct mesh *mesh, const struct viscosity *viscosity,
-                   double *const u[DIM], double *const tau[DIM]) {
+                   double *const u[DIM], double *const tau[]) {
   const double *eta_f = viscosity->eta_f;
   const struct skin *skin = viscosity->skin;
   for (int d = 0; d < DIM; d++) {
@@ -101,29 +124,35 @@ static void stress(const struct mesh *mesh, const struct viscosity *viscosity,
     }
   }
   if (skin) skin_stress(mesh, eta_f, skin, u, tau);
+  if (mesh_is_axisymmetric(mesh)) hoop_stress(mesh, eta_f, u[0], tau[HOOP]);
   if (viscosity->kappa_f) add_bulk(mesh, viscosity, u, tau);
-  mesh_fill_faces(mesh, DIM, tau);
+  mesh_fill_faces(mesh, nstresses(mesh), tau);
 }
 
 void viscous_force(const struct mesh *mesh, const struct viscosity *viscosity,
                    double *const u[DIM], double *const force[DIM]) {
-  double *tau[DIM];
-  for (int e = 0; e < DIM; e++) tau[e] = MEM_NEW(double, mesh->nfaces_all);
+  double *tau[HOOP + 1];
+  const int n = nstresses(mesh);
+  for (int e = 0; e < n; e++) tau[e] = MEM_NEW(double, mesh->nfaces_all);
   stress(mesh, viscosity, u, tau);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       force[e][i] = mesh_divergence(mesh, tau[e], i);
     }
-    mem_free(tau[e]);
   }
+  for (int32_t i = 0; i < mesh->nleaves && n > DIM; i++) {
+    force[0][i] += mesh_hoop_force(mesh, tau[HOOP], i);
+  }
+  for (int e = 0; e < n; e++) mem_free(tau[e]);
 }
 
 /* q = rho u - theta dt div(stress), u filled; q may be u. */
 static void operate(const struct context *k, double *const u[DIM],
                     double *const q[DIM]) {
   const struct mesh *mesh = k->mesh;
-  double *tau[DIM];
-  for (int e = 0; e < DIM; e++) {
+  double *tau[HOOP + 1];
+  const int n = nstresses(mesh);
+  for (int e = 0; e < n; e++) {
     tau[e] = k->h->work_faces + (int64_t)e * mesh->nfaces_all;
   }
   stress(mesh, k->viscosity, u, tau);
@@ -132,6 +161,9 @@ static void operate(const struct context *k, double *const u[DIM],
     for (int e = 0; e < DIM; e++) {
       q[e][i] = k->rho[i] * u[e][i] - ratio * mesh_net(mesh, tau[e], i);
     }
+  }
+  for (int32_t i = 0; i < mesh->nleaves && n > DIM; i++) {
+    q[0][i] -= k->theta_dt * mesh_hoop_force(mesh, tau[HOOP], i);
   }
 }
 

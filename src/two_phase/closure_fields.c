@@ -36,7 +36,8 @@ static double leaf_shear_squared(const struct mesh *mesh, const double *c,
       sum += (grad[e][t] + grad[t][e]) * (grad[e][t] + grad[t][e]);
     }
   }
-  return sum;
+  const double hoop = mesh_hoop(mesh, u[0], i);
+  return sum + 2 * hoop * hoop;
 }
 
 /* Set the shear rate of all leaves, [nleaves]. */

@@ -6,7 +6,6 @@
 #include "talus/error.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
-#include "talus/plane.h"
 #include "talus/two_phase/closure_fields.h"
 #include "talus/two_phase/fractions.h"
 #include "talus/two_phase/state.h"
@@ -40,7 +39,8 @@ static double sum_total(const struct mesh *mesh, struct sum local) {
 /* Return the centre along axis d of what lies below the plane in a cell of
  * width 1, seen from the centre of the cell: 1/2 - int m(s) ds / m(1/2), where
  * m(s) is the volume at x_d < s. Simpson's rule, good to 1e-3. */
-static double centroid(const double normal[DIM], double alpha, int d) {
+static double centroid(const struct mesh *mesh, int32_t leaf,
+                       const double normal[DIM], double alpha, int d) {
   static const double weight[] = {1, 4, 2, 4, 1};
   double lo[DIM], hi[DIM], integral = 0, volume = 0;
   for (int k = 0; k < DIM; k++) {
@@ -49,7 +49,7 @@ static double centroid(const double normal[DIM], double alpha, int d) {
   }
   for (int k = 1; k <= 4; k++) {
     hi[d] = -0.5 + 0.25 * k;
-    volume = 0.25 * k * plane_box_volume(normal, alpha, lo, hi);
+    volume = 0.25 * k * vof_part(mesh, leaf, normal, alpha, lo, hi);
     integral += weight[k] * volume / 12;
   }
   return volume > 0 ? 0.5 - integral / volume : 0;
@@ -65,7 +65,8 @@ static double leaf_potential(const struct mesh *mesh, const double *c,
   vof_plane(mesh, c, i, normal, &alpha);
   for (int d = 0; d < DIM; d++)
     if (gravity[d] != 0)
-      potential += gravity[d] * mesh->h[i] * centroid(normal, alpha, d);
+      potential +=
+          gravity[d] * mesh->h[i] * centroid(mesh, i, normal, alpha, d);
   return potential;
 }
 

@@ -135,6 +135,10 @@ enum {
   NCOLUMNS
 };
 
+/* In axisymmetric coordinates those of the whole turn around the axis. */
+#define VOLUME_UNIT "m^2 (3D, axisymmetric: m^3)"
+#define ENERGY_UNIT "J/m (3D, axisymmetric: J)"
+
 /* clang-format off */
 static const struct column COLUMNS[NCOLUMNS] = {
     [STEP] = {"step", COLUMN_INTEGER, "", "number of the step; 0 is the start"},
@@ -142,14 +146,15 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [DT] = {"dt", COLUMN_REAL, "s", "its length"},
     [CELLS] = {"cells", COLUMN_INTEGER, "", "leaves of the tree"},
     [FRONT] = {"front", COLUMN_SHORT, "m",
-               "where the heap ends, its x (3D: radius from its axis)"},
+               "where the heap ends, its x (3D and axisymmetric: radius from "
+               "its axis)"},
     [HEIGHT] = {"height", COLUMN_SHORT, "m", "of the heap"},
-    [VOLUME] = {"volume", COLUMN_REAL, "m^2 (3D: m^3)", "of all grains"},
-    [KINETIC] = {"kinetic", COLUMN_SHORT, "J/m (3D: J)",
+    [VOLUME] = {"volume", COLUMN_REAL, VOLUME_UNIT, "of all grains"},
+    [KINETIC] = {"kinetic", COLUMN_SHORT, ENERGY_UNIT,
                  "energy of the grains"},
-    [POTENTIAL] = {"potential", COLUMN_SHORT, "J/m (3D: J)",
+    [POTENTIAL] = {"potential", COLUMN_SHORT, ENERGY_UNIT,
                    "energy of the grains"},
-    [DISSIPATED] = {"dissipated", COLUMN_SHORT, "J/m (3D: J)",
+    [DISSIPATED] = {"dissipated", COLUMN_SHORT, ENERGY_UNIT,
                     "by viscosity since the start"},
     [MAX_SPEED] = {"max_speed", COLUMN_SHORT, "m/s", "of the grains"},
     [PRESSURE_ITERATIONS] = {"pressure_iterations", COLUMN_INTEGER, "",
@@ -160,14 +165,14 @@ static const struct column COLUMNS[NCOLUMNS] = {
                       "on the clock since the first step"},
     [DROPLETS] = {"droplets", COLUMN_INTEGER, "",
                   "sets of grains apart from the heap"},
-    [DROPLET_VOLUME] = {"droplet_volume", COLUMN_SHORT, "m^2 (3D: m^3)",
+    [DROPLET_VOLUME] = {"droplet_volume", COLUMN_SHORT, VOLUME_UNIT,
                         "their volume"},
-    [NUMERICAL] = {"numerical", COLUMN_SHORT, "J/m (3D: J)",
+    [NUMERICAL] = {"numerical", COLUMN_SHORT, ENERGY_UNIT,
                    "initial + work_of_changes - kinetic - potential - "
                    "dissipated - given_to_gas: what the scheme loses, less "
                    "what gravity brings along a periodic side, and what left "
                    "with grains"},
-    [DIVERGENCE_VOLUME] = {"divergence_volume", COLUMN_REAL, "m^2 (3D: m^3)",
+    [DIVERGENCE_VOLUME] = {"divergence_volume", COLUMN_REAL, VOLUME_UNIT,
                            "sum over steps of c div u dt V"},
     [PRESSURE_RESIDUAL] = {"pressure_residual", COLUMN_SHORT, "",
                            "left by the pressure solver, max |div u| dt"},
@@ -178,10 +183,10 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [REPEAT_CHANGE] = {"repeat_change", COLUMN_SHORT, "m/s",
                        "of the velocity in the last Picard repetition; 0 "
                        "without"},
-    [WORK_OF_CHANGES] = {"work_of_changes", COLUMN_SHORT, "J/m (3D: J)",
+    [WORK_OF_CHANGES] = {"work_of_changes", COLUMN_SHORT, ENERGY_UNIT,
                          "energy that restarts with another gravity or "
                          "density have added"},
-    [GIVEN_TO_GAS] = {"given_to_gas", COLUMN_SHORT, "J/m (3D: J)",
+    [GIVEN_TO_GAS] = {"given_to_gas", COLUMN_SHORT, ENERGY_UNIT,
                       "by the grains, in a box that as much gas enters as "
                       "leaves: it rises where they fall"},
 };

@@ -40,12 +40,15 @@ static void fill_shape(const struct beginning *beginning,
   enum { DEEPEST = 6 };
   const struct two_phase *sim = beginning->sim;
   const struct mesh *mesh = sim->grid.mesh;
+  double (*const fraction)(shape_level_set, void *, const double[DIM], double,
+                           int) =
+      mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     tell(beginning, "shapes", i);
     int depth = sim->params->level_max - mesh->level[i] + (int)fineness;
     if (depth > DEEPEST) depth = DEEPEST;
-    field->v[i] = shape->eval ? shape_fraction(shape->eval, shape->context,
-                                               mesh->x[i], mesh->h[i], depth)
+    field->v[i] = shape->eval ? fraction(shape->eval, shape->context,
+                                         mesh->x[i], mesh->h[i], depth)
                               : 1;
   }
 }
@@ -67,8 +70,9 @@ static double mixed_velocity(const struct two_phase *sim,
     }
     const bool grains = params->shape.eval(params->shape.context, x) > 0;
     const double rho = grains ? params->grains.density : params->gas.density;
-    mass += rho;
-    momentum += rho * velocity->eval(velocity->context, x);
+    const double part = params_axisymmetric(params) ? rho * x[0] : rho;
+    mass += part;
+    momentum += part * velocity->eval(velocity->context, x);
   }
   return momentum / mass;
 }

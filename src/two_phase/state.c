@@ -76,16 +76,26 @@ static struct field *add_fraction(struct two_phase *sim, const char *name,
   return field;
 }
 
+/* Does the sum of a velocity mean a momentum that is kept? That of a radial one
+ * does not; it is linear at the axis, and is to stay so. */
+static bool is_kept(const struct field *field) {
+  const struct two_phase *sim = field->context;
+  return field->component > 0 || !params_axisymmetric(sim->params);
+}
+
 /* Leave a mixed leaf its one velocity in all parts; elsewhere take slopes. */
 static double divide_momentum(const struct remap *remap,
                               const struct field *field, int32_t leaf) {
   const struct two_phase *sim = field->context;
-  return vof_is_cut(sim->c->v[remap->map->first[leaf]])
-             ? remap_value(remap, field, leaf)
-             : remap_on_slopes(remap, field, leaf);
+  if (vof_is_cut(sim->c->v[remap->map->first[leaf]])) {
+    return remap_value(remap, field, leaf);
+  }
+  return is_kept(field) ? remap_on_ring_slopes(remap, field, leaf)
+                        : remap_on_slopes(remap, field, leaf);
 }
 
-/* Take the mean velocity weighted by density, which conserves momentum. */
+/* Take the mean velocity weighted by mass, which conserves momentum; a radial
+ * one by density. */
 static double merge_momentum(const struct remap *remap,
                              const struct field *field, int32_t leaf) {
   const struct two_phase *sim = field->context;
@@ -94,7 +104,8 @@ static double merge_momentum(const struct remap *remap,
   const int32_t first = remap->map->first[leaf];
   double sum = 0, weights = 0;
   for (int32_t i = first; i < first + remap->map->count[leaf]; i++) {
-    const double weight = gas + sim->c->v[i] * (grains - gas);
+    const double volume = is_kept(field) ? remap_weight(remap, leaf, i) : 1;
+    const double weight = volume * (gas + sim->c->v[i] * (grains - gas));
     sum += weight * field->v[i];
     weights += weight;
   }
@@ -105,9 +116,10 @@ static const struct field_rule momentum_rule = {divide_momentum,
                                                 merge_momentum};
 
 static struct field *add_kept_face(struct two_phase *sim, const char *name,
-                                   const char *unit, const char *title) {
+                                   const char *unit, const char *title,
+                                   const struct field_rule *rule) {
   struct field *field = fields_add(&sim->grid.fields, sim->grid.mesh, name,
-                                   unit, title, FIELD_FACE, &remap_faces);
+                                   unit, title, FIELD_FACE, rule);
   field->restart = true;
   return field;
 }
@@ -122,13 +134,17 @@ static void add_yield(struct two_phase *sim) {
                                       "strain_trend_2", "strain_trend_3",
                                       "strain_trend_4"};
   struct yield *yield = &sim->yield;
-  for (int k = 0; k < STRAIN_ROWS; k++) {
-    yield->s[k] = add_kept_face(sim, stress[k], "Pa", "yield stress");
-    yield->strain[k] = add_kept_face(sim, strain[k], "1/s", "rate of strain");
-    yield->trend[k] = add_kept_face(sim, trend[k], "1/s^2", "its change");
+  yield->nrows = strain_rows(sim->grid.mesh);
+  for (int k = 0; k < yield->nrows; k++) {
+    yield->s[k] =
+        add_kept_face(sim, stress[k], "Pa", "yield stress", &remap_faces);
+    yield->strain[k] =
+        add_kept_face(sim, strain[k], "1/s", "rate of strain", &remap_faces);
+    yield->trend[k] =
+        add_kept_face(sim, trend[k], "1/s^2", "its change", &remap_faces);
   }
-  yield->tau_y =
-      add_kept_face(sim, "yield_stress", "Pa", "bound of the yield stress");
+  yield->tau_y = add_kept_face(sim, "yield_stress", "Pa",
+                               "bound of the yield stress", &remap_faces);
 }
 
 static void add_state(struct two_phase *sim) {
@@ -155,8 +171,8 @@ static void add_state(struct two_phase *sim) {
                  &remap_average, false);
   }
   sim->p = add_cell(sim, "pressure", "Pa", "pressure", &remap_linear, true);
-  sim->u_f =
-      add_kept_face(sim, "face_velocity", "m/s", "normal velocity at faces");
+  sim->u_f = add_kept_face(sim, "face_velocity", "m/s",
+                           "normal velocity at faces", &remap_flux);
   const struct rheology *grains = &sim->params->grains.rheology;
   sim->exact =
       grains->regularisation == RHEOLOGY_EXACT && rheology_yields(grains);
@@ -234,7 +250,7 @@ static void add_scratch(struct two_phase *sim) {
   const bool more = sim->params->theta < 1 || sim->exact;
   const int ncells = (more ? 3 : 2) * DIM + 1;
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, ncells,
-               (sim->exact ? STRAIN_ROWS : DIM) + 2);
+               (sim->exact ? sim->yield.nrows : DIM) + 2);
 }
 
 struct two_phase *two_phase_new_on(const struct params *params,

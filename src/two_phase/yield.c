@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "talus/minmax.h"
-#include "talus/plane.h"
 #include "talus/two_phase/properties.h"
 #include "talus/two_phase/state.h"
 #include "talus/two_phase/time_step.h"
@@ -48,7 +47,7 @@ static double wet_side(const struct two_phase *sim, int d, int32_t f,
   n[d] = 0;
   for (int e = 0; e < DIM; e++) size += fabs(n[e]);
   if (size < 1e-12) return alpha > 0 ? 1 : alpha < 0 ? 0 : 0.5;
-  return plane_box_volume(n, alpha, lo, hi);
+  return vof_part(mesh, leaf, n, alpha, lo, hi);
 }
 
 /* Set the wet part a [nfaces] of each face. */
@@ -174,7 +173,7 @@ void yield_update(struct two_phase *sim, double *const u[DIM]) {
 static void extrapolate(const struct yield *yield, int32_t f, double dt,
                         double guess[STRAIN_ROWS]) {
   double now[STRAIN_ROWS], product = 0, size = 0, most = 0;
-  for (int k = 0; k < STRAIN_ROWS; k++) {
+  for (int k = 0; k < yield->nrows; k++) {
     now[k] = yield->strain[k]->v[f];
     guess[k] = now[k] + dt * yield->trend[k]->v[f];
     product += guess[k] * now[k];
@@ -182,18 +181,18 @@ static void extrapolate(const struct yield *yield, int32_t f, double dt,
     most += guess[k] * guess[k];
   }
   const bool turns = product<LEAST * size, leaps = most> MOST * MOST * size;
-  for (int k = 0; k < STRAIN_ROWS && (turns || leaps); k++) {
+  for (int k = 0; k < yield->nrows && (turns || leaps); k++) {
     guess[k] = turns ? LEAST * now[k] : now[k];
   }
 }
 
-/* Project q on |q| <= tau_y; returns the factor that does it. */
-static double project(double q[STRAIN_ROWS], int d, double tau_y) {
+/* Project q, of n rows, on |q| <= tau_y; returns the factor that does it. */
+static double project(int n, double q[STRAIN_ROWS], int d, double tau_y) {
   double *rows[STRAIN_ROWS];
   for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &q[k];
-  const double size = sqrt(strain_norm_squared(rows, d, 0));
+  const double size = sqrt(strain_norm_squared(n, rows, d, 0));
   const double m = size > tau_y ? tau_y / size : 1;
-  for (int k = 0; k < STRAIN_ROWS; k++) q[k] *= m;
+  for (int k = 0; k < n; k++) q[k] *= m;
   return m;
 }
 
@@ -201,23 +200,24 @@ void yield_linearise(struct two_phase *sim, double dt, double *eta,
                      double *const force[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct yield *yield = &sim->yield;
-  double *stress[DIM];
-  scratch_take(&sim->scratch, FIELD_FACE, __func__, DIM, stress);
+  double *stress[STRAIN_ROWS];
+  const int n = mesh_is_axisymmetric(mesh) ? STRAIN_HOOP + 1 : DIM;
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, n, stress);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const double tau_y = yield->tau_y->v[f], r = tau_y / yield->gamma_r;
       double q[STRAIN_ROWS];
       extrapolate(yield, f, dt, q);
-      for (int k = 0; k < STRAIN_ROWS; k++) {
+      for (int k = 0; k < yield->nrows; k++) {
         q[k] = yield->s[k]->v[f] + 2 * r * q[k];
       }
-      const double m = project(q, d, tau_y);
+      const double m = project(yield->nrows, q, d, tau_y);
       eta[f] = sim->eta_f->v[f] + m * r;
-      for (int e = 0; e < DIM; e++) stress[e][f] = m * yield->s[e]->v[f];
+      for (int e = 0; e < n; e++) stress[e][f] = m * yield->s[e]->v[f];
     }
   }
   mesh_fill_faces(mesh, 1, &eta);
-  mesh_fill_faces(mesh, DIM, stress);
+  mesh_fill_faces(mesh, n, stress);
   strain_divergence(mesh, stress, force);
   scratch_give(&sim->scratch, __func__);
 }
@@ -226,14 +226,14 @@ void yield_linearise(struct two_phase *sim, double dt, double *eta,
 static void renew_trend(const struct yield *yield, int32_t f, double dt,
                         const double strain[STRAIN_ROWS]) {
   double change[STRAIN_ROWS], product = 0, size = 0, last = 0;
-  for (int k = 0; k < STRAIN_ROWS; k++) {
+  for (int k = 0; k < yield->nrows; k++) {
     const double before = yield->trend[k]->v[f];
     change[k] = (strain[k] - yield->strain[k]->v[f]) / dt;
     product += change[k] * before;
     size += change[k] * change[k], last += before * before;
   }
   const bool agree = product > AGREE * sqrt(size * last);
-  for (int k = 0; k < STRAIN_ROWS; k++) {
+  for (int k = 0; k < yield->nrows; k++) {
     yield->trend[k]->v[f] = change[k] * (agree ? 1 : FORGOTTEN);
   }
 }
@@ -243,19 +243,19 @@ void yield_advance(struct two_phase *sim, double dt, double *const u[DIM],
   const struct mesh *mesh = sim->grid.mesh;
   const struct yield *yield = &sim->yield;
   double *rows[STRAIN_ROWS];
-  scratch_take(&sim->scratch, FIELD_FACE, __func__, STRAIN_ROWS, rows);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, yield->nrows, rows);
   strain_find(mesh, sim->skin, u, rows);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const double tau_y = yield->tau_y->v[f], r = tau_y / yield->gamma_r;
       double strain[STRAIN_ROWS], q[STRAIN_ROWS];
-      for (int k = 0; k < STRAIN_ROWS; k++) {
+      for (int k = 0; k < yield->nrows; k++) {
         strain[k] = rows[k][f];
         q[k] = yield->s[k]->v[f] + 2 * r * strain[k];
       }
       if (!again) renew_trend(yield, f, dt, strain);
-      project(q, d, tau_y);
-      for (int k = 0; k < STRAIN_ROWS; k++) {
+      project(yield->nrows, q, d, tau_y);
+      for (int k = 0; k < yield->nrows; k++) {
         yield->strain[k]->v[f] = strain[k], yield->s[k]->v[f] = q[k];
       }
     }
@@ -268,11 +268,12 @@ void yield_find_state(struct two_phase *sim, double *state) {
   const struct yield *yield = &sim->yield;
   double *rows[STRAIN_ROWS];
   double *flows = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
-  for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = yield->s[k]->v;
+  for (int k = 0; k < yield->nrows; k++) rows[k] = yield->s[k]->v;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const double least = (1 - REACHED) * yield->tau_y->v[f];
-      flows[f] = least > 0 && strain_norm_squared(rows, d, f) >= least * least;
+      flows[f] = least > 0 &&
+                 strain_norm_squared(yield->nrows, rows, d, f) >= least * least;
     }
   }
   mesh_fill_faces(mesh, 1, &flows);

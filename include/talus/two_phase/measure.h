@@ -10,6 +10,9 @@
  *   shear_rate mean over the grains, 1/s (closure_fields.h)
  *   layer      int min(tracer, c) dz of the heap per column, m
  *
+ * In axisymmetric coordinates sums are those of the whole turn around the axis,
+ * in m^3 and J.
+ *
  * Sums are compensated [neumaier_1974, doi:10.1002/zamm.19740540106] and added
  * over ranks in rank order, so that the volume is good to a few 1e-16 and the
  * same from run to run.

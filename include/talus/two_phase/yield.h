@@ -37,6 +37,7 @@
 struct two_phase;
 
 struct yield {
+  int nrows;                    /* of the tensors below (strain.h) */
   struct field *s[STRAIN_ROWS]; /* yield stress, Pa; kept */
   struct field *strain[STRAIN_ROWS], *trend[STRAIN_ROWS]; /* D, 1/s, and its
                                   change, 1/s^2; kept */
