@@ -104,7 +104,7 @@ def make_figure(snapshots, times, units, field):
         ax.set_ylim(window[2:])
         ax.set_title(f"$t$ = {time}{words}", loc="left", fontsize=9)
         ax.set_ylabel(run_data.label("height", units.length))
-    axes[-1, 0].set_xlabel(run_data.label("$x$", units.length))
+    axes[-1, 0].set_xlabel(run_data.label(units.across, units.length))
     if field == "state":
         fig.get_layout_engine().set(rect=(0, 0.3 / fig.get_figheight(), 1,
                                           1 - 0.3 / fig.get_figheight()))

@@ -50,7 +50,7 @@ def gravity_of(parameters):
 
 
 class Units:
-    """Words for the axes: the units that the parameters `length_unit` and
+    """Words for the axes: `across`, the coordinate, and the units that the parameters `length_unit` and
     `time_unit` name; without them L0 and sqrt(L0/g) where |gravity| = 1, else m
     and s. Where |gravity| = 1 fields are in these, g and the density rho of the
     grains."""
@@ -59,6 +59,8 @@ class Units:
         self.plain = abs(math.hypot(*gravity_of(parameters)) - 1) < 1e-12
         length, time = ((r"$L_0$", r"$\sqrt{L_0/g}$") if self.plain
                         else ("m", "s"))
+        rings = parameters.get("coordinates") == "axisymmetric"
+        self.across = "$r$" if rings else "$x$"
         self.length = parameters.get("length_unit", length)
         self.time = parameters.get("time_unit", time)
 

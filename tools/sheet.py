@@ -71,7 +71,7 @@ class Sheet:
             if k % self.columns == 0:
                 ax.set_ylabel(label("height", units.length))
             if k + self.columns >= len(self.axes):
-                ax.set_xlabel(label("$x$", units.length), labelpad=2)
+                ax.set_xlabel(label(units.across, units.length), labelpad=2)
             else:
                 ax.tick_params(labelbottom=False)
 

@@ -392,7 +392,7 @@ def plot_panels(path, name, runs):
         ax.spines[["top", "right"]].set_visible(False)
         if profiles:
             ax.legend(fontsize=7, frameon=False, loc="upper right", ncol=2)
-    axes[-1, 0].set_xlabel(run_data.label("$x$", units.length))
+    axes[-1, 0].set_xlabel(run_data.label(units.across, units.length))
     fig.supylabel(run_data.label("height", units.length), fontsize="medium")
     fig.savefig(path, dpi=150)
     plt.close(fig)

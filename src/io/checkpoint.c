@@ -42,6 +42,7 @@ static void field_path(const struct field *field, char path[NAME_LENGTH]) {
 static void write_layout(struct hdf5_file *file,
                          const struct forest_layout *layout) {
   int64_t format = FORMAT, dimension = DIM, trees[DIM], periodic[DIM];
+  const int64_t axisymmetric = layout->axisymmetric;
   for (int d = 0; d < DIM; d++) {
     trees[d] = layout->trees[d];
     periodic[d] = layout->periodic[d];
@@ -50,6 +51,7 @@ static void write_layout(struct hdf5_file *file,
   hdf5_write_integer(file, "/", "dimension", 1, &dimension);
   hdf5_write_integer(file, "/", "trees", DIM, trees);
   hdf5_write_integer(file, "/", "periodic", DIM, periodic);
+  hdf5_write_integer(file, "/", "axisymmetric", 1, &axisymmetric);
   hdf5_write_real(file, "/", "size", 1, &layout->size);
   hdf5_write_real(file, "/", "origin", DIM, layout->origin);
 }
@@ -183,14 +185,14 @@ static void check_seal(MPI_Comm comm, const char *path) {
 static void refuse_other_box(const char *path, const char *what) {
   USER_ERROR(
       "'%s' belongs to a run with another %s; --restart needs the box of that "
-      "run: give the same dimension, size, origin, trees and periodic axes, or "
-      "start afresh without --restart",
+      "run: give the same dimension, coordinates, size, origin, trees and "
+      "periodic axes, or start afresh without --restart",
       path, what);
 }
 
 static void compare_layout(struct hdf5_file *file, const char *path,
                            const struct forest_layout *layout) {
-  int64_t dimension = 0, trees[DIM], periodic[DIM];
+  int64_t dimension = 0, trees[DIM], periodic[DIM], axisymmetric = 0;
   double size = 0, origin[DIM];
   if (!hdf5_read_integer(file, "/", "dimension", 1, &dimension))
     USER_ERROR("'%s' is no checkpoint of talus", path);
@@ -200,6 +202,9 @@ static void compare_layout(struct hdf5_file *file, const char *path,
       !hdf5_read_real(file, "/", "size", 1, &size) ||
       !hdf5_read_real(file, "/", "origin", DIM, origin))
     USER_ERROR("'%s' does not say which box it is for", path);
+  hdf5_read_integer(file, "/", "axisymmetric", 1, &axisymmetric);
+  if ((axisymmetric != 0) != layout->axisymmetric)
+    refuse_other_box(path, "kind of coordinates");
   if (size != layout->size) refuse_other_box(path, "size of the box");
   for (int d = 0; d < DIM; d++) {
     if (trees[d] != layout->trees[d]) refuse_other_box(path, "brick of trees");

@@ -107,6 +107,36 @@ bad_edit exact_gas 'exact_gas.lua:6: .*"exact" is for the grains' \
   '"bingham", tau_y = 1, eta_0 = 1, regularisation = "exact"'
 bad_edit exact_name 'exact_name.lua:4: .*did you mean `?exact' \
   'eta_max = 10' 'regularisation = "exct"'
+# coordinates
+rings="${good/dimension = 2,/dimension = 2, coordinates = \"axisymmetric\",}"
+# bad_rings NAME PATTERN FROM TO: the sound case around an axis, as bad_edit
+bad_rings() {
+  bad_case "$1" "$2" "${rings/"$3"/$4}"
+}
+echo "$rings" > cases/rings.lua
+(cd work && "$build/talus" check ../cases/rings.lua) > output 2>&1 ||
+  complain "the sound case around an axis is refused"
+bad_edit coordinates_key \
+  'coordinates_key.lua:1: unknown key axisymmetric = true; did you mean coordinates = "axisymmetric"' \
+  'dimension = 2,' 'dimension = 2, axisymmetric = true,'
+bad_edit coordinates_axi 'unknown key axi = 1; did you mean coordinates = ' \
+  'dimension = 2,' 'dimension = 2, axi = 1,'
+bad_edit coordinates_value \
+  'coordinates = "axi": "cartesian" or "axisymmetric" is needed' \
+  'dimension = 2,' 'dimension = 2, coordinates = "axi",'
+bad_case rings_3d 'coordinates = "axisymmetric" is for dimension = 2' \
+  "$(sed 's/dimension = 3,/&coordinates = "axisymmetric",/' \
+    "$root/examples/box3d.lua")"
+bad_rings rings_gravity 'rings_gravity.lua:3: gravity = .0.1, -1.*take .0, -1' \
+  '{ 0, -1 }' '{ 0.1, -1 }'
+bad_rings rings_origin 'rings_origin.lua:2: domain.origin.1. = -1' \
+  'size = 4,' 'size = 4, origin = { -1, 0 },'
+bad_rings rings_axis 'rings_axis.lua:7: boundary.left is the axis.*"symmetry"' \
+  'left = "symmetry"' 'left = "no_slip"'
+bad_rings rings_periodic 'boundary.left = "periodic": .* do not meet' \
+  'left = "symmetry", right = "no_slip"' 'left = "periodic", right = "periodic"'
+bad_rings rings_walls 'rings_walls.lua:4: grains.side_walls: they stand across' \
+  'density = 1,' 'density = 1, side_walls = { mu = 0.2, width = 1 },'
 bad_edit walls_width 'walls_width.lua:4: grains.side_walls.width is missing' \
   'density = 1,' 'density = 1, side_walls = { mu = 0.2 },'
 bad_edit walls_key 'walls_key.lua:4: unknown key grains.side_walls.w = 1' \

@@ -94,6 +94,20 @@ must 2 talus2d run $rest -o yield --quiet
 stops 2 talus2d run $rest -o yields --quiet --max-steps 31
 must 2 talus2d run $rest -o yields --quiet --restart
 same "rest on 2" yield yields
+# around an axis, where it has one row more
+cylinder="$root/examples/cylinder.lua cells=8 stop=1"
+for n in 1 2; do
+  must $n talus2d run $cylinder -o cylinder-$n --quiet
+  stops $n talus2d run $cylinder -o rings-$n --quiet --max-steps 13
+  must $n talus2d run $cylinder -o rings-$n --quiet --restart
+  same "cylinder on $n" cylinder-$n rings-$n
+done
+awk -v a="$(last cylinder-1 5)" -v b="$(last cylinder-2 5)" \
+  'BEGIN { exit !(a - b < 0.01 && b - a < 0.01) }' ||
+  complain "the front of a cylinder depends on ranks"
+sed 's/"axisymmetric" or/"cartesian" or/' "$root/examples/cylinder.lua" > plane.lua
+refused "another kind of coordinates" 1 talus2d run plane.lua cells=8 stop=1 \
+  -o rings-1 --restart
 cp -r parts-1 again
 must 1 talus2d run $shape stop=2.5 -o again --quiet --restart
 [ "$(own_words < output)" = "talus: restart with stop = 2.5 (was 2)" ] ||
