@@ -35,20 +35,18 @@ between short and tall ones
 import argparse
 import csv
 import pathlib
-import re
-import subprocess
-import sys
 
 import run_data  # first: it says so if one of the next is missing
 import expression
 import power_law
+import run_cases
+from run_cases import fail, split_word, text_of
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import (FuncFormatter, LogLocator, MaxNLocator,
                                NullFormatter, NullLocator)
 
 COLOUR, GREY, BLUE = "#8a5a22", "#777777", "#24639c"
-STOPPED = 5  # exit status of a run that ended before its time
 TITLES = {"runout": "run-out", "height": "height"}
 HEADER = ["front", "height", "runout", "arrest_time", "last_speed"]
 
@@ -76,43 +74,12 @@ class Run:
 # Parameters
 
 
-def fail(text, status=2):
-    print(f"sweep: error: {text}", file=sys.stderr)
-    sys.exit(status)
-
-
-def split_word(word):
-    name, sign, value = word.partition("=")
-    if not (name and sign and value):
-        fail(f"'{word}' is not of the form name=value")
-    return name, value
-
-
 def is_plain(value):
     """Whether a value is a number or a list of numbers as it stands."""
     try:
         return all(float(part) == float(part) for part in value.split(","))
     except ValueError:
         return False
-
-
-def ask_case(options, words):
-    """{name: value} of all parameters of the case, as `talus check` prints
-    them."""
-    answer = subprocess.run([options.talus, "check", options.case, *words],
-                            capture_output=True, text=True)
-    if answer.returncode != 0:
-        sys.stderr.write(answer.stderr)
-        sys.exit(answer.returncode)
-    declared = re.split(r"^title +=", answer.stdout, flags=re.MULTILINE)[0]
-    return dict(re.findall(r"^(?:param\.)?(\w+) += (\S+) ", declared,
-                           re.MULTILINE))  # before the first key of the case
-
-
-def text_of(value):
-    """A number that reads back the same, whole ones as whole ones."""
-    whole = value == round(value) and abs(value) < 1e15
-    return str(round(value)) if whole else repr(value)
 
 
 def evaluate_word(name, text, values, pending):
@@ -128,6 +95,10 @@ def evaluate_word(name, text, values, pending):
                         for tree in trees)
     except expression.ExpressionError as error:
         return fail(f"{name}={text}: {error}")
+
+
+def ask_case(options, words):
+    return run_cases.ask_case(options.talus, options.case, words)
 
 
 def resolve(options, swept, fixed):
@@ -168,51 +139,15 @@ def base_of(options, words):
 # Runs
 
 
-def start(command):
-    """Exit status of a command. Ctrl-C reaches the run as well, which then
-    writes a checkpoint: wait for it."""
-    process = subprocess.Popen(command)
-    while True:
-        try:
-            return process.wait()
-        except KeyboardInterrupt:
-            continue
-
-
-def run_one(options, words, directory):
-    """Run, or go on, unless just that run is there, complete. Returns the exit
-    status."""
-    stamp, stopped = directory / "sweep.txt", directory / "sweep-stopped.txt"
-    text = options.case.read_text(encoding="utf-8") + "\n".join(words)
-
-    def holds(path):
-        return path.exists() and path.read_text(encoding="utf-8") == text
-
-    if holds(stamp) and (directory / "series.csv").exists():
-        return 0
-    go_on = holds(stopped) and (directory / "checkpoint.h5").exists()
-    stamp.unlink(missing_ok=True)
-    stopped.unlink(missing_ok=True)
-    status = start([options.talus, "run", options.case, *words, "--quiet",
-                    "-o", directory, *(["--restart"] if go_on else [])])
-    if status in (0, STOPPED):
-        (stamp if status == 0 else stopped).write_text(text, encoding="utf-8")
-    return status
-
-
 def run_all(options, name, values, fixed, output):
-    runs = []
+    done = []
     for value in values:
         words, derived = resolve(options, f"{name}={value}", fixed)
         base, directory = base_of(options, words), output / value
-        status = run_one(options, words, directory)
-        if status == STOPPED:
-            fail(f"{name}={value} was stopped before its end; the same command "
-                 "goes on from there", STOPPED)
-        if status != 0:
-            fail(f"{name}={value} ended with status {status}", max(status, 1))
-        runs.append(Run(value, directory, base, derived))
-    return runs
+        run_cases.run_to_end(options.talus, options.case, words, directory,
+                             f"{name}={value}")
+        done.append(Run(value, directory, base, derived))
+    return done
 
 
 # Power laws
@@ -419,7 +354,6 @@ def write_results(options, name, runs, output):
 
 
 def parse_options():
-    here = pathlib.Path(__file__).resolve().parent.parent
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("case", metavar="CASE.lua", type=pathlib.Path,
@@ -436,7 +370,7 @@ def parse_options():
     parser.add_argument("--break", metavar="X|find", dest="break_at",
                         help="two power laws that meet there")
     parser.add_argument("--talus", type=pathlib.Path,
-                        default=here / "build" / "talus",
+                        default=run_cases.TALUS,
                         help="the program, default that of build/")
     return parser.parse_intermixed_args()
 
@@ -468,10 +402,7 @@ def main():
     check_options(options, name, values)
     if not options.case.is_file():
         fail(f"there is no case '{options.case}'")
-    options.talus = options.talus.resolve()
-    if not options.talus.is_file():
-        fail(f"there is no program '{options.talus}'; `make` builds it, or "
-             "--talus names another")
+    options.talus = run_cases.check_program(options.talus)
     output = options.output or pathlib.Path(f"{options.case.stem}-{name}")
     output.mkdir(parents=True, exist_ok=True)
     runs = run_all(options, name, values, options.words[1:], output)
