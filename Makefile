@@ -49,7 +49,7 @@ PROOFS   = $(foreach d,2d 3d,$(BUILD)/$d/convergence $(BUILD)/$d/bench)
 .SUFFIXES:
 # Targets that start programs; containers run as root and forbid CMA.
 RUNNING = check check-unit check-mesh check-case examples-check demo asan \
-          convergence bench valgrind coverage
+          convergence bench valgrind coverage figure
 .PHONY: all debug tests setup format format-check check-includes \
         tidy compdb clean help FORCE $(RUNNING)
 $(foreach v,OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
@@ -125,6 +125,10 @@ convergence: ## proof of the numbers in five minutes; CASE=NAME, CASE=short
 bench: ## speed and memory, beside Gerris where it is installed; JOB=NAME
 	$(AGAIN) all $(PROOFS)
 	@$(PYTHON) tools/bench.py $(BUILD) $(JOB)
+figure: ## of a paper, from our runs: PAPER=valette_2019 FIG=14, or FIG=all
+	$(AGAIN) all
+	@$(PYTHON) tools/figure.py $(PAPER) $(FIG) -o $(BUILD)/figures/$(PAPER) \
+	  --talus $(BUILD)/talus
 examples-check: ## every example at low resolution against its `expect`
 	$(AGAIN) all
 	@tests/run.sh $(BUILD) examples

@@ -46,7 +46,9 @@
 -- rho g sin(alpha) H0^2/(2 eta_max), tan(alpha) = mu_s, 0.6 sqrt(g L0), so do
 -- not read a deposit from it; below 1e-4 sqrt(g H0) need eta_max = 5000
 -- sin(alpha) a^1.5. Front and top at the end, level 9: 9.195, 1.300 and 9.200,
--- 1.307, for two thirds more viscous iterations.
+-- 1.307, for two thirds more viscous iterations. advection=off: the grains lose
+-- their inertia and run as a wave (figure 14e). The figures of the paper, with
+-- its numbers beside ours: tools/figure.py lagree_staron_popinet_2011 12
 
 local a = param("a", 6.26, "aspect ratio H0/L0 of the column")
 local size = param("size", 32, "edge of the box, in L0")
@@ -60,12 +62,16 @@ local eta_max = param("eta_max", 10, "cap on viscosity, in rho sqrt(g L0^3)")
 local regularisation = param("regularisation", "clip",
                              "of the yield stress; exact: without eta_max")
 local slip = param("slip", 0, "slip length of the floor, in L0; 0: rough")
+local advection = param("advection", "on", "of momentum; off: without inertia")
 local rho_gas = param("rho_gas", 1e-3, "density of the gas, in rho")
 local shift = param("shift", 0, "cells by which the side misses a face")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 local cfl = param("cfl", 0.7, "bound on sum |u_f| A dt/(2 V), the time step")
 local times = param("times", {0.66, 0.95, 1.24, 1.52, 2.28},
                     "times of the outlines, in sqrt(H0/g)")
+local every = param("every", 0.1, "time between snapshots, in sqrt(L0/g)")
+local rest = param("rest", 0, "speed, in sqrt(g H0), at which grains are at " ..
+                              "rest and the run ends; 0: it goes on to stop")
 param("reference", a == 6.26 and "reference/contact_dynamics_a6.26.csv" or "",
       "outlines of the grains that `talus plot` lays over ours")
 
@@ -112,8 +118,14 @@ return {
   },
 
   adapt = { { "interface", width = 4 }, { "inside" } },
-  solver = { tolerance = tolerance, cfl = cfl },
-  output = { stop = stop, profile_times = profile_times, snapshot_every = 0.1 },
+  solver = { tolerance = tolerance, cfl = cfl, advection = advection },
+  output = {
+    stop = stop,
+    stop_at_rest = rest > 0 and { speed = rest * math.sqrt(g * a),
+                                  time = 0.2 * math.sqrt(a / g) } or nil,
+    profile_times = profile_times,
+    snapshot_every = every,
+  },
 
   expect = {
     run = "level=8",

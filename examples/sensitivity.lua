@@ -27,36 +27,44 @@
 -- Expect. Less friction of any kind runs further: the run-out falls with mu_s
 -- and delta_mu and rises with I0. Valette finds run-out ~ mu_s^-1.2 (0.32 to
 -- 0.62) and I0^0.11 (0.04 to 4), and a power four times weaker for delta_mu
--- than for mu_s; here it is mu_s^-1.11, I0^0.12, delta_mu^-0.25 (levels 8 and
--- 9: mu_s^-1.05, mu_s^-1.05; with slip=0 at levels 7, 8, 9: -1.06, -0.97,
--- -0.95, as the half cell by which a front slips in any case gets smaller).
--- More friction also means an earlier arrest, from 6.6 sqrt(L0/g) for
--- mu_s = 0.32 to 5.2 for 0.62.
+-- than for mu_s; here it is mu_s^-1.10, I0^0.12, delta_mu^-0.24 (levels 8 and
+-- 9: mu_s^-1.07, mu_s^-1.06; with slip=0 at levels 7, 8, 9: -1.08, -0.98,
+-- -0.98, as the half cell by which a front slips in any case gets smaller).
+-- More friction also means an earlier arrest, from 6.4 sqrt(L0/g) for
+-- mu_s = 0.32 to 4.8 for 0.62.
 --
--- Try. One sweep each:
+-- Try. The figures of the paper, with its numbers beside ours:
+--   tools/figure.py valette_2019 7 11 13
+-- or one sweep each:
 --   tools/sweep.py examples/sensitivity.lua mu_s=0.32,0.42,0.52,0.62
 --   tools/sweep.py examples/sensitivity.lua delta_mu=0.18,0.28,0.38,0.48
 --   tools/sweep.py examples/sensitivity.lua I0=0.04,0.4,4
--- each with level=8, or with a=10 size=32 level=9 stop=20.
+-- each with level=8, or with a=10 size=32 level=9.
 
 local a = param("a", 1.42, "aspect ratio H0/L0 of the column")
 local size = param("size", 8, "edge of the box, in L0")
 local level = param("level", 7, "finest grid: size/2^level")
-local stop = param("stop", 9, "time of the end, in sqrt(L0/g)")
+local stop = param("stop", 12, "time of the end at the latest, in sqrt(H0/g)")
+local rest = param("rest", 1e-3, "speed, in sqrt(g H0), at which grains are " ..
+                                 "at rest and the run ends")
 local d = param("d", math.sqrt(a / 6041), "grain diameter, in L0")
 local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
 local slip = param("slip", 4 * d, "slip length of the floor, in L0; 0: rough")
--- so that the heap at rest creeps at less than 1e-4 sqrt(g H0): rho g
--- sin(alpha) H0^2/(2 eta_max), tan(alpha) = mu_s; the paper has 250 a^1.5
-local eta_max = param("eta_max", 6000 * math.sin(math.atan(mu_s)) * a^1.5,
-                      "cap on viscosity, in rho sqrt(g L0^3)")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 local picard = param("picard", 0, "repetitions within a step")
+local times = param("times", {0, 1, 2, 4},
+                    "times of the outlines, in sqrt(H0/g)")
+local every = param("every", 0, "time between snapshots, in sqrt(H0/g); " ..
+                                "0: the first and the last only")
 
 local rho, g = 1, 1                     -- the units
 local rho_gas, eta_gas = 1e-3, 1e-4     -- rho, rho sqrt(g L0^3)
+local unit = math.sqrt(a / g)           -- of time, sqrt(H0/g)
+
+local profile_times = {}
+for i, t in ipairs(times) do profile_times[i] = t * unit end
 
 return {
   title = "Run-out of a column, mu_s = " .. mu_s .. ", delta_mu = " ..
@@ -68,7 +76,7 @@ return {
   grains = {
     density = rho,
     rheology = { "mu_i", mu_s = mu_s, delta_mu = delta_mu, I0 = I0, d = d,
-                 eta_min = rho * math.sqrt(g * d^3), eta_max = eta_max },
+                 eta_min = rho * math.sqrt(g * d^3), regularisation = "exact" },
     shape = function(x, y) return math.min(1 - x, a - y) end,
   },
   gas = { density = rho_gas, rheology = { "newtonian", eta = eta_gas } },
@@ -83,7 +91,12 @@ return {
 
   adapt = { { "interface", width = 3 }, { "inside" } },
   solver = { tolerance = tolerance, picard = picard },
-  output = { stop = stop, profile_times = { 0, 1.5, 3, 4.5 } },
+  output = {
+    stop = stop * unit,
+    stop_at_rest = { speed = rest * math.sqrt(g * a), time = 0.2 * unit },
+    profile_times = profile_times,
+    snapshot_every = every * unit,
+  },
 
   expect = {
     front = { 4.7, 5.1 },

@@ -247,12 +247,18 @@ def integral(y, x):
     return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x)))
 
 
-def compare(x, height, reference_x, reference_height):
-    """Symmetric difference of two outlines as a part of the area, with the
-    heights of the reference scaled so that both have the same area.
+class Outlines(NamedTuple):
+    """Two outlines at the same points, the second one, of a reference, with its
+    heights multiplied by `scale` so that both have the same area."""
+    x: np.ndarray
+    height: np.ndarray
+    reference: np.ndarray
+    scale: float
 
-    Both are taken as straight between their points and 0 beyond the last.
-    Returns (difference, scale)."""
+
+def align(x, height, reference_x, reference_height):
+    """Outlines, taken as straight between their points and 0 beyond the last.
+    """
     low = min(x[0], reference_x[0])
     high = max(x[-1], reference_x[-1])
     step = min(np.min(np.diff(x)), np.min(np.diff(reference_x))) / 4
@@ -260,8 +266,14 @@ def compare(x, height, reference_x, reference_height):
     h = np.interp(fine, x, height, right=0)
     r = np.interp(fine, reference_x, reference_height, right=0)
     scale = integral(h, fine) / integral(r, fine)
-    difference = integral(np.abs(h - scale * r), fine) / integral(h, fine)
-    return difference, scale
+    return Outlines(fine, h, scale * r, scale)
+
+
+def compare(x, height, reference_x, reference_height):
+    """Symmetric difference of two outlines as a part of the area, with the
+    heights of the reference scaled as in `align`: (difference, scale)."""
+    fine, h, r, scale = align(x, height, reference_x, reference_height)
+    return integral(np.abs(h - r), fine) / integral(h, fine), scale
 
 
 class Snapshot:
