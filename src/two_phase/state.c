@@ -250,7 +250,7 @@ static void add_scratch(struct two_phase *sim) {
   const bool more = sim->params->theta < 1 || sim->exact;
   const int ncells = (more ? 3 : 2) * DIM + 1;
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, ncells,
-               (sim->exact ? sim->yield.nrows : DIM) + 2);
+               sim->exact ? sim->yield.nrows + 3 : DIM + 2);
 }
 
 struct two_phase *two_phase_new_on(const struct params *params,

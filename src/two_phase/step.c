@@ -424,20 +424,21 @@ static void solve_yield(struct two_phase *sim, double dt, int repetition,
   enum { FIRST_SOLVES = 3 };
   const struct mesh *mesh = sim->grid.mesh;
   const bool first = sim->model.step == 0;
-  double *full[DIM];
-  double *eta = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  double *full[DIM], *face[2];
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
+  double *r = face[0], *eta = face[1];
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, full);
   for (int k = 0; k < (first ? FIRST_SOLVES : 1); k++) {
     const struct solve_stats before = sim->viscous;
     const bool again = first || repetition > 0;
-    yield_linearise(sim, again ? 0 : dt, eta, full);
+    yield_linearise(sim, again ? 0 : dt, r, eta, full);
     for (int e = 0; e < DIM; e++) {
       for (int32_t i = 0; i < mesh->nleaves; i++) {
         full[e][i] = rhs[e][i] + dt * full[e][i];
       }
     }
     sim->viscous = solve_viscous(sim, dt, mass, eta, full, bc, u);
-    yield_advance(sim, dt, u, again);
+    yield_advance(sim, dt, r, u, again);
     if (k > 0) add_solve(&sim->viscous, &before);
   }
   scratch_give(&sim->scratch, __func__);

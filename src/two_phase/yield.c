@@ -196,23 +196,58 @@ static double project(int n, double q[STRAIN_ROWS], int d, double tau_y) {
   return m;
 }
 
-void yield_linearise(struct two_phase *sim, double dt, double *eta,
+/* Set rate [ncells] of leaves and ghosts to the mean |D| of their sides; face:
+ * work [nfaces_all]. */
+static void find_local_rate(const struct two_phase *sim, double *face,
+                            double *rate) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const int n = sim->yield.nrows;
+  double *rows[STRAIN_ROWS];
+  for (int k = 0; k < n; k++) rows[k] = sim->yield.strain[k]->v;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      face[f] = sqrt(strain_norm_squared(n, rows, d, f));
+    }
+  }
+  mesh_fill_faces(mesh, 1, &face);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    rate[i] = mesh_mean(mesh, face, i);
+  }
+  mesh_fill_ghosts(mesh, 1, &rate);
+}
+
+/* Set r of each face. */
+static void set_stiffness(struct two_phase *sim, double *r) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *rate = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  find_local_rate(sim, r, rate);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int32_t *leaf = mesh->face_leaf[f];
+    const double lower = rate[leaf[leaf[0] < 0]];
+    const double upper = rate[leaf[leaf[1] >= 0]];
+    r[f] =
+        sim->yield.tau_y->v[f] / (sim->yield.gamma_r + 0.5 * (lower + upper));
+  }
+  scratch_give(&sim->scratch, __func__);
+}
+
+void yield_linearise(struct two_phase *sim, double dt, double *r, double *eta,
                      double *const force[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct yield *yield = &sim->yield;
   double *stress[STRAIN_ROWS];
   const int n = mesh_is_axisymmetric(mesh) ? STRAIN_HOOP + 1 : DIM;
   scratch_take(&sim->scratch, FIELD_FACE, __func__, n, stress);
+  set_stiffness(sim, r);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double tau_y = yield->tau_y->v[f], r = tau_y / yield->gamma_r;
       double q[STRAIN_ROWS];
       extrapolate(yield, f, dt, q);
       for (int k = 0; k < yield->nrows; k++) {
-        q[k] = yield->s[k]->v[f] + 2 * r * q[k];
+        q[k] = yield->s[k]->v[f] + 2 * r[f] * q[k];
       }
-      const double m = project(yield->nrows, q, d, tau_y);
-      eta[f] = sim->eta_f->v[f] + m * r;
+      const double m = project(yield->nrows, q, d, yield->tau_y->v[f]);
+      eta[f] = sim->eta_f->v[f] + m * r[f];
       for (int e = 0; e < n; e++) stress[e][f] = m * yield->s[e]->v[f];
     }
   }
@@ -238,8 +273,8 @@ static void renew_trend(const struct yield *yield, int32_t f, double dt,
   }
 }
 
-void yield_advance(struct two_phase *sim, double dt, double *const u[DIM],
-                   bool again) {
+void yield_advance(struct two_phase *sim, double dt, const double *r,
+                   double *const u[DIM], bool again) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct yield *yield = &sim->yield;
   double *rows[STRAIN_ROWS];
@@ -247,14 +282,13 @@ void yield_advance(struct two_phase *sim, double dt, double *const u[DIM],
   strain_find(mesh, sim->skin, u, rows);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double tau_y = yield->tau_y->v[f], r = tau_y / yield->gamma_r;
       double strain[STRAIN_ROWS], q[STRAIN_ROWS];
       for (int k = 0; k < yield->nrows; k++) {
         strain[k] = rows[k][f];
-        q[k] = yield->s[k]->v[f] + 2 * r * strain[k];
+        q[k] = yield->s[k]->v[f] + 2 * r[f] * strain[k];
       }
       if (!again) renew_trend(yield, f, dt, strain);
-      project(yield->nrows, q, d, tau_y);
+      project(yield->nrows, q, d, yield->tau_y->v[f]);
       for (int k = 0; k < yield->nrows; k++) {
         yield->strain[k]->v[f] = strain[k], yield->s[k]->v[f] = q[k];
       }

@@ -258,6 +258,45 @@ START_TEST(a_cut_leaf_weighs_on_the_face_below) {
 }
 END_TEST
 
+/* Where D is 2 on all faces but one, on which it vanishes, r is tau_y/(gamma_r
+ * + 2), or a little more beside that one. */
+START_TEST(a_still_face_in_a_flow_is_as_soft_as_the_others) {
+  double height = -0.5375, stiffest = 0, softest = 1e300;
+  struct params p = box_params(3);
+  p.level_max = 4;
+  p.shape = (struct function){level_grains, &height};
+  p.grains.rheology = exact_closure("bingham");
+  rheology_set(&p.grains.rheology, "tau_y", 1);
+  rheology_set(&p.grains.rheology, "eta_0", 1);
+  struct two_phase *sim = flat_grains(&p);
+  const struct mesh *mesh = sim->grid.mesh;
+  double *r = MEM_NEW(double, mesh->nfaces_all);
+  double *eta = MEM_NEW(double, mesh->nfaces_all), *force[DIM];
+  for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, mesh->ncells);
+  for (int d = 0; d < DIM; d++) {
+    const int other = (d + 1) % DIM;
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++)
+      sim->yield.strain[other]->v[f] = f == 0 ? 0 : 2;
+  }
+  sim->yield.gamma_r = 1e-3;
+  yield_linearise(sim, 0.1, r, eta, force);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const double scaled = r[f] / sim->yield.tau_y->v[f];
+    if (sim->yield.tau_y->v[f] == 0) continue;
+    stiffest = larger(stiffest, scaled);
+    softest = fmin(softest, scaled);
+  }
+  stiffest = mesh_max(mesh, stiffest);
+  softest = -mesh_max(mesh, -softest);
+  for (int d = 0; d < DIM; d++) mem_free(force[d]);
+  mem_free(r), mem_free(eta);
+  two_phase_destroy(sim);
+  ck_assert_double_eq_tol(softest, 1 / 2.001, 1e-12);
+  /* D = 0 at one of at least four sides, of one leaf where that is a wall */
+  ck_assert_double_le(stiffest, 1 / 1.5);
+}
+END_TEST
+
 /* u_e = sum_t (e + 2 t + 1) x_t. */
 static double plane_flow(int e, const double x[3]) {
   double u = 0;
@@ -322,6 +361,7 @@ Suite *yield_suite(void) {
   tcase = tcase_create("surface");
   tcase_add_loop_test(tcase, faces_are_wet_as_far_as_grains_reach, 0, 2);
   tcase_add_test(tcase, a_cut_leaf_weighs_on_the_face_below);
+  tcase_add_test(tcase, a_still_face_in_a_flow_is_as_soft_as_the_others);
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("strain");
   tcase_add_test(tcase, strain_of_a_linear_flow_is_exact);

@@ -13,8 +13,11 @@
  * the method of multipliers [bermudez_moreno_1981] with one step of Picard's
  * in it. Grains at rest have D = 0 whatever r is: r is no viscosity, only the
  * stiffness r/dt of a spring that holds them while s builds up. It is
- *   r = tau_y/gamma_r,  gamma_r = 5e-4 max(sqrt(g/H), U/L),
- * H = max tau_y/(rho_1 g), U the largest speed and L the length of the domain.
+ *   r = tau_y/(gamma_r + G),  gamma_r = 5e-4 max(sqrt(g/H), U/L),
+ * H = max tau_y/(rho_1 g), U the largest speed, L the length of the domain, and
+ * G the mean |D^n| around the face. Grains that flow past a face in which D
+ * happens to vanish need no spring so stiff: alone among soft faces, it would
+ * cost the solver many iterations.
  *
  * Grains and gas act side by side on a face, of which the part a is wet (by the
  * planes of its leaves):
@@ -48,17 +51,17 @@ struct yield {
 
 /* Set eta_f, tau_y and gamma_r from the velocity, which is filled, and p. */
 void yield_update(struct two_phase *sim, double *const u[DIM]);
-/* Set the viscosity eta [nfaces_all] of a solve over dt and the force div(m
- * s^n) that it needs besides, force[e] [nleaves]. Collective. */
-void yield_linearise(struct two_phase *sim, double dt, double *eta,
+/* Set r [nfaces_all], the viscosity eta [nfaces_all] of a solve over dt and the
+ * force div(m s^n) that it needs besides, force[e] [nleaves]. Collective. */
+void yield_linearise(struct two_phase *sim, double dt, double *r, double *eta,
                      double *const force[DIM]);
 /* Set state [nleaves] to the part of the sides of a leaf whose stress has
  * reached the yield stress: 0 where grains are held, 1 where they flow, 0 in
  * gas. Collective. */
 void yield_find_state(struct two_phase *sim, double *state);
-/* Take D of the solution u, which is filled, and the stress that goes with it.
- * again: the step has had a solve before. Collective. */
-void yield_advance(struct two_phase *sim, double dt, double *const u[DIM],
-                   bool again);
+/* Take D of the solution u, which is filled, and the stress that goes with it;
+ * r: of yield_linearise. again: the step has had a solve before. Collective. */
+void yield_advance(struct two_phase *sim, double dt, const double *r,
+                   double *const u[DIM], bool again);
 
 #endif
