@@ -261,9 +261,15 @@ static _Noreturn void refuse_closure(const char *word) {
              nearest ? "; did you mean " : "", nearest ? nearest : "", known);
 }
 
+/* Find a closure; plane shear of the model four_state is what lee_huang has in
+ * local balance, with the same keys. */
+static const struct rheology_model *find_closure(const char *name) {
+  return rheology_find(strcmp(name, "four_state") == 0 ? "lee_huang" : name);
+}
+
 int command_rheology(int argc, char *argv[]) {
   if (argc == 0) return list_closures();
-  const struct rheology_model *model = rheology_find(argv[0]);
+  const struct rheology_model *model = find_closure(argv[0]);
   if (model == NULL) refuse_closure(argv[0]);
   struct rheology rheology;
   double pressure = 1;

@@ -20,6 +20,8 @@ says '^    e_eff +1 +0.01 to 0.99 +0.58 '
 says 'well posed for 0.013631 < I < 1.81' mu_i
 says 'well posed for 0 < I < 16.992' mu_i_well_posed
 says 'I_tran = 1.171.*mu_tran = 0.542.*I_max = 2.105' lee_huang p=1000
+# Fig. 1 of lee_huang_chiew_2015; the paper's table II has I_tran = 1.492.
+says 'I_tran = 1.466.*mu_tran = 0.592' four_state e_eff=0.46 eta_S=0.42 d=0.0005
 says 'user: viscosity = .*only a case file' user
 says 'lee_huang: nu_min < nu_0 < nu_max' lee_huang nu_0=0.64
 says 'closure muI; did you mean mu_i' muI
