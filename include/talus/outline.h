@@ -48,5 +48,7 @@ void outline_free(struct outline *outline);
 double outline_height(const struct outline *outline);
 /* Return the front, m; without any grains the lower side in 2D, 0 in 3D. */
 double outline_front(const struct outline *outline);
+/* Return the front where the heap ends at the height `end` > 0 instead. */
+double outline_front_at(const struct outline *outline, double end);
 
 #endif

@@ -118,11 +118,10 @@ static int tallest(int n, const double *h) {
   return best;
 }
 
-static double front_2d(const struct outline *o) {
+static double front_2d(const struct outline *o, double threshold) {
   const int n = o->n[0];
   const double *h = o->height;
   int start = tallest(n, h);
-  const double threshold = end_height(o, h[start]);
   if (h[start] <= 0) return o->first[0] - 0.5 * o->spacing;
   double upper = walk(n, h, threshold, start, 1);
   if (o->rings) return o->first[0] + o->spacing * upper;
@@ -161,9 +160,8 @@ static void lean(const struct outline *o, int k, double *first, double *last,
 
 /* Find the axis of the rings, in columns, and which directions count in the
  * radius. */
-static void find_axis(const struct outline *o, double axis[2],
+static void find_axis(const struct outline *o, double threshold, double axis[2],
                       double weight[2]) {
-  const double threshold = end_height(o, outline_height(o));
   for (int k = 0; k < 2; k++) {
     double first, last, centre;
     lean(o, k, &first, &last, &centre);
@@ -174,9 +172,9 @@ static void find_axis(const struct outline *o, double axis[2],
   if (weight[0] == 0 && weight[1] == 0) weight[0] = weight[1] = 1;
 }
 
-static double front_3d(const struct outline *o) {
+static double front_3d(const struct outline *o, double end) {
   double axis[2], weight[2];
-  find_axis(o, axis, weight);
+  find_axis(o, end > 0 ? end : end_height(o, outline_height(o)), axis, weight);
   int n = (int)hypot(weight[0] * o->n[0], weight[1] * o->n[1]) + 2;
   double *mean = MEM_NEW(double, (size_t)n),
          *count = MEM_NEW(double, (size_t)n);
@@ -193,7 +191,7 @@ static double front_3d(const struct outline *o) {
   while (n > 1 && count[n - 1] == 0) n--; /* outside the box */
   double front = 0;
   int start = tallest(n, mean);
-  const double threshold = end_height(o, mean[start]);
+  const double threshold = end > 0 ? end : end_height(o, mean[start]);
   if (mean[start] > 0)
     front = o->spacing * (walk(n, mean, threshold, start, 1) + 0.5);
   mem_free(mean);
@@ -202,5 +200,11 @@ static double front_3d(const struct outline *o) {
 }
 
 double outline_front(const struct outline *outline) {
-  return DIM == 2 ? front_2d(outline) : front_3d(outline);
+  return DIM == 2
+             ? front_2d(outline, end_height(outline, outline_height(outline)))
+             : front_3d(outline, 0);
+}
+
+double outline_front_at(const struct outline *outline, double end) {
+  return DIM == 2 ? front_2d(outline, end) : front_3d(outline, end);
 }

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What grains are in leaves and at faces, from nu, T and u.
+ *
+ * Masses. A leaf gives its mass to its two faces along an axis, the parts
+ * 1 - s to the lower and s to the upper one,
+ *   s = w_upper/(w_lower + w_upper),   w = min(nu, nu of the neighbour),
+ * half to each within the grains, and all to the one that leads to grains where
+ * the other leads to none. A face so has the mass
+ *   M = max(s_0 nu_0 + (1 - s_1) nu_1, 1/2 max(nu_0, nu_1)),
+ * and the weight that it carries is that of all grains above it, a part-filled
+ * leaf of the surface included. With the same parts
+ *   u_f = (s_0 nu_0 u_0 + (1 - s_1) nu_1 u_1)/(s_0 nu_0 + (1 - s_1) nu_1)
+ *   a   = (1 - s) a_lower + s a_upper,   a_f = g - grad p/(rho_d M)
+ * go from leaves to faces and back. Walls do not accelerate: a_f = 0.
+ */
+#ifndef TALUS_FOUR_STATE_PROPERTIES_H
+#define TALUS_FOUR_STATE_PROPERTIES_H
+
+struct four_state;
+
+/* Fill nu and set p, p_E, mu_K, lambda_K (filled) and the masses. Collective.
+ */
+void four_state_properties(struct four_state *sim);
+/* Set eta_f, kappa_f and shear_f of a velocity u, filled: friction
+ * p_E eta_S (1 - exp(-n gamma/2))/gamma and mu_K, p_E on no-slip walls with the
+ * weight of the grains that lie on them. Collective. */
+void four_state_viscosity(struct four_state *sim, double *const u[]);
+/* Set shear_f, on all faces. u filled. Collective. */
+void four_state_shear(struct four_state *sim, double *const u[]);
+/* Set a_f [nfaces_all] of a pressure p, filled. Collective. */
+void four_state_face_acceleration(const struct four_state *sim, const double *p,
+                                  double *a_f);
+/* Set a[d] [nleaves] of a_f. */
+void four_state_acceleration(const struct four_state *sim, const double *a_f,
+                             double *const a[]);
+/* Set u_f [nfaces_all] to the mean of u, filled, and 0 on walls; faces of other
+ * ranks are not set. */
+void four_state_face_velocity(const struct four_state *sim, double *const u[],
+                              double *u_f);
+
+#endif

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pressure of grains that are compressible, together with their mass.
+ *
+ *   nu^{n+1} + dt div(nu_f u_f) = nu^n,   p = P(nu^{n+1})
+ *   u_f = u_f* - dt m_f grad(p - p^n)
+ *
+ * with P a rising function of nu in each leaf, m_f the mobility 1/(rho M) of a
+ * face and nu_f the donor's nu there, with a limited slope. Newton's method in
+ * q, the change of p: with R the residual of the first equation,
+ *
+ *   div(alpha grad q) - q/P' = R,   alpha = dt^2 nu_f m_f,
+ *
+ * symmetric and an M-matrix, solved by poisson_solve. Where q < 0 grains
+ * expand and nu <- nu + q/P'; where q > 0 they are compressed and nu <- P^-1(p
+ * + q): P is convex, so nu never crosses a pole and no damping is needed
+ * [brugnano_casulli_2008]. At the end nu is that of the fluxes, so that mass is
+ * kept to round-off.
+ */
+#ifndef TALUS_GRANULAR_PRESSURE_H
+#define TALUS_GRANULAR_PRESSURE_H
+
+#include <stdbool.h>
+
+#include "talus/mesh.h"
+#include "talus/solve.h"
+
+struct hierarchy;
+
+/* What grains are made of, leaf by leaf. */
+struct granular_material {
+  const void *context;
+  /* Return P(nu), Pa, and its slope. */
+  double (*pressure)(const void *context, int32_t leaf, double nu,
+                     double *slope);
+  /* Return the nu of a pressure above that of `from`. */
+  double (*solid_fraction)(const void *context, int32_t leaf, double p,
+                           double from);
+};
+
+struct granular_pressure {
+  const struct mesh *mesh;
+  struct hierarchy *hierarchy;
+  struct granular_material material;
+  const double *mobility_f; /* [nfaces_all] m_f, m^3/kg, 0 on closed patches */
+  const double *nu_old;     /* [ncells] nu^n, filled */
+  const double *p_old;      /* [ncells] p^n, filled */
+  double least_slope;       /* of P that is taken for P', Pa, > 0 */
+  double tolerance;         /* on max |R| */
+  int max_newton, max_iterations;
+  double *slope[DIM];          /* [>= nleaves + nghosts] scratch */
+  double *change, *mass, *rhs; /* [ncells] scratch */
+  double *u_start, *alpha;     /* [nfaces_all] scratch */
+};
+
+struct granular_stats {
+  int newton;          /* iterations */
+  int iterations;      /* of the linear solver, over all of them */
+  int most_iterations; /* in one of them */
+  double residual;     /* max |R| at the end */
+  enum solve_status status;
+};
+
+/* Find nu, p, u_f and the flux nu_f u_f at the end of dt.
+ *   u_f   [nfaces_all] in: u_f*; out: with the new pressure
+ *   p     [ncells] out: P(nu), filled
+ *   nu    [nleaves] out: solid fraction by the fluxes
+ *   flux  [nfaces_all] out: nu_f u_f, valid on all faces
+ * Collective. */
+struct granular_stats granular_pressure_solve(
+    const struct granular_pressure *by, double dt, double *u_f, double *p,
+    double *nu, double *flux);
+
+/* Return the smaller of a and b if they have one sign, else 0. */
+static inline double granular_minmod(double a, double b) {
+  if (!(a * b > 0)) return 0;
+  return fabs(a) < fabs(b) ? a : b;
+}
+/* Set limited differences of v along d over a leaf, and fill their ghosts.
+ * slope [>= nleaves + nghosts]; v filled. Collective. */
+void granular_slopes(const struct mesh *mesh, int d, const double *v,
+                     double *slope);
+/* Return the value of v that passes a face of axis d with the velocity u_f over
+ * dt: that of the donor at the face, half a step earlier. slope: along d. */
+double granular_donor(const struct mesh *mesh, int32_t f, double dt, double u_f,
+                      const double *v, const double *slope);
+
+#endif

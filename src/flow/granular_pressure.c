@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/granular_pressure.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/minmax.h"
+#include "talus/poisson.h"
+
+/* The linear solves gain this factor on R. */
+static const double LINEAR_GAIN = 1e-2;
+/* Part of its grains that a leaf may give away in a step. */
+static const double MOST_GIVEN = 0.9;
+
+static const struct bc NEUMANN[MESH_MAX_PATCHES];
+
+void granular_slopes(const struct mesh *mesh, int d, const double *v,
+                     double *slope) {
+  const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t *node = mesh->stencil[i];
+    slope[i] = granular_minmod(v[i] - v[node[lower]], v[node[upper]] - v[i]);
+  }
+  mesh_fill_ghosts(mesh, 1, (double *const[]){slope});
+}
+
+double granular_donor(const struct mesh *mesh, int32_t f, double dt, double u_f,
+                      const double *v, const double *slope) {
+  const int side = u_f > 0 ? 0 : 1;
+  const int32_t leaf = mesh->face_leaf[f][side];
+  if (leaf < 0) return v[mesh->face_node[f][side]];
+  const double reach = 1 - mesh_edges(mesh, leaf, fabs(u_f) * dt);
+  return v[leaf] + (side ? -0.5 : 0.5) * max2(reach, 0) * slope[leaf];
+}
+
+/* Reduce the fluxes out of leaves that would give away more than MOST_GIVEN of
+ * their grains, as thin ones may beside fast ones. */
+static void limit_fluxes(const struct granular_pressure *by, double dt,
+                         double *flux) {
+  const struct mesh *mesh = by->mesh;
+  double *limit = by->change, most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double out = 0;
+    for (int s = 0; s < NFACE; s++) {
+      const double v = mesh_side(mesh, flux, i, s);
+      out += max2(s & 1 ? v : -v, 0);
+    }
+    out *= dt / mesh_width(mesh, i);
+    const double may = MOST_GIVEN * max2(by->nu_old[i], 0);
+    limit[i] = out > may ? may / out : 1;
+    most = max2(most, 1 - limit[i]);
+  }
+  if (!(mesh_max(mesh, most) > 0)) return;
+  mesh_fill_ghosts(mesh, 1, &limit);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int32_t leaf = mesh->face_leaf[f][flux[f] > 0 ? 0 : 1];
+    if (leaf >= 0) flux[f] *= limit[leaf];
+  }
+  mesh_fill_faces(mesh, 1, &flux);
+}
+
+/* Set u_f and the flux for a pressure, filled here. */
+static void move(const struct granular_pressure *by, double dt, double *p,
+                 double *u_f, double *flux) {
+  const struct mesh *mesh = by->mesh;
+  const struct bc *bc = NEUMANN;
+  mesh_fill(mesh, 1, &p, &bc, false);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      const double change =
+          (p[node[1]] - by->p_old[node[1]]) - (p[node[0]] - by->p_old[node[0]]);
+      u_f[f] =
+          by->u_start[f] - dt * by->mobility_f[f] * mesh_slope(mesh, f, change);
+      flux[f] = u_f[f] *
+                granular_donor(mesh, f, dt, u_f[f], by->nu_old, by->slope[d]);
+    }
+  }
+  mesh_fill_faces(mesh, 2, (double *const[]){u_f, flux});
+  limit_fluxes(by, dt, flux);
+}
+
+/* Set the residual; returns its largest. */
+static double residual(const struct granular_pressure *by, double dt,
+                       const double *nu, const double *flux) {
+  const struct mesh *mesh = by->mesh;
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    by->rhs[i] = nu[i] - by->nu_old[i] + dt * mesh_divergence(mesh, flux, i);
+    most = max2(most, fabs(by->rhs[i]));
+    if (isnan(by->rhs[i])) most = INFINITY;
+  }
+  return mesh_max(mesh, most);
+}
+
+/* Set alpha for the present donors. */
+static void set_alpha(const struct granular_pressure *by, double dt,
+                      const double *u_f, const double *flux) {
+  const struct mesh *mesh = by->mesh;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const double nu = u_f[f] != 0 ? flux[f] / u_f[f]
+                                    : granular_donor(mesh, f, dt, 0, by->nu_old,
+                                                     by->slope[d]);
+      by->alpha[f] = dt * dt * max2(nu, 0) * by->mobility_f[f];
+    }
+  }
+  mesh_fill_faces(mesh, 1, (double *const[]){by->alpha});
+}
+
+/* Take a Newton step from nu, p. */
+static struct solve_stats newton(const struct granular_pressure *by,
+                                 double size, double *nu, double *p) {
+  const struct mesh *mesh = by->mesh;
+  const struct granular_material *m = &by->material;
+  double *q = by->change;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double slope;
+    m->pressure(m->context, i, nu[i], &slope);
+    by->mass[i] = 1 / max2(slope, by->least_slope);
+  }
+  memset(q, 0, (size_t)mesh->ncells * sizeof *q);
+  const double tolerance = max2(LINEAR_GAIN * size, 0.1 * by->tolerance);
+  const struct solve_stats stats =
+      poisson_solve(mesh, by->hierarchy, by->alpha, by->mass, NULL, by->rhs,
+                    NEUMANN, tolerance, by->max_iterations, q);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double unused;
+    const double linear = nu[i] + by->mass[i] * q[i];
+    nu[i] =
+        q[i] > 0
+            ? min2(linear, m->solid_fraction(m->context, i, p[i] + q[i], nu[i]))
+            : linear;
+    p[i] = m->pressure(m->context, i, nu[i], &unused);
+  }
+  mesh_touch(mesh, p);
+  return stats;
+}
+
+struct granular_stats granular_pressure_solve(
+    const struct granular_pressure *by, double dt, double *u_f, double *p,
+    double *nu, double *flux) {
+  const struct mesh *mesh = by->mesh;
+  struct granular_stats stats = {.status = SOLVE_STALLED};
+  memcpy(by->u_start, u_f, (size_t)mesh->nfaces_all * sizeof *u_f);
+  memcpy(nu, by->nu_old, (size_t)mesh->nleaves * sizeof *nu);
+  memcpy(p, by->p_old, (size_t)mesh->nleaves * sizeof *p);
+  for (int d = 0; d < DIM; d++) {
+    granular_slopes(mesh, d, by->nu_old, by->slope[d]);
+  }
+  for (;; stats.newton++) {
+    move(by, dt, p, u_f, flux);
+    stats.residual = residual(by, dt, nu, flux);
+    if (stats.residual <= by->tolerance) stats.status = SOLVE_CONVERGED;
+    if (stats.status == SOLVE_CONVERGED || stats.newton == by->max_newton ||
+        !isfinite(stats.residual))
+      break;
+    set_alpha(by, dt, u_f, flux);
+    const struct solve_stats linear = newton(by, stats.residual, nu, p);
+    stats.iterations += linear.iterations;
+    if (linear.iterations > stats.most_iterations)
+      stats.most_iterations = linear.iterations;
+  }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    nu[i] = by->nu_old[i] - dt * mesh_divergence(mesh, flux, i);
+  }
+  return stats;
+}

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/four_state/properties.h"
+
+#include <math.h>
+
+#include "talus/four_state/state.h"
+#include "talus/minmax.h"
+#include "talus/strain.h"
+
+/* A face that leads to no grains weighs this part of one that does, so that
+ * parts are defined where there are none around. */
+static const double LIGHT = 1e-3;
+/* Masses below this count as this. */
+static const double LEAST_MASS = 1e-12;
+
+static double weight(double here, double there) {
+  const double nu = max2(there, 0);
+  return min2(here, nu) + LIGHT * max2(here, nu);
+}
+
+static void set_upper(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *nu = sim->nu->v;
+  for (int d = 0; d < DIM; d++) {
+    double *upper = sim->upper[d]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const int32_t *node = mesh->stencil[i];
+      const double lo = weight(nu[i], nu[node[stencil_face(2 * d)]]);
+      const double hi = weight(nu[i], nu[node[stencil_face(2 * d + 1)]]);
+      upper[i] = lo + hi > 0 ? hi / (lo + hi) : 0.5;
+    }
+  }
+  field_fill_many(mesh, DIM, sim->upper);
+}
+
+/* Give the masses that both leaves lend to a face of axis d. */
+static inline void lent(const struct four_state *sim, int d, int32_t f,
+                        double mass[2]) {
+  const int32_t *node = sim->grid.mesh->face_node[f];
+  const double *nu = sim->nu->v, *upper = sim->upper[d]->v;
+  mass[0] = max2(nu[node[0]], 0) * upper[node[0]];
+  mass[1] = max2(nu[node[1]], 0) * (1 - upper[node[1]]);
+}
+
+static void set_mobility(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double rho = sim->closure.param[LEE_HUANG_RHO_D];
+  const double *nu = sim->nu->v;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      double mass[2];
+      lent(sim, d, f, mass);
+      const double least = 0.5 * max2(nu[node[0]], nu[node[1]]);
+      const double M = max2(max2(mass[0] + mass[1], least), LEAST_MASS);
+      sim->mobility_f->v[f] = mesh->face_patch[f] >= 0 ? 0 : 1 / (rho * M);
+    }
+  }
+  field_fill_faces(mesh, sim->mobility_f);
+}
+
+void four_state_properties(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct four_state_closure *c = &sim->closure;
+  const double scale = c->param[LEE_HUANG_RHO_D] * c->param[LEE_HUANG_D];
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double nu = sim->nu->v[i], T = sim->T->v[i];
+    sim->p->v[i] = sim->p_E->v[i] = sim->mu_K->v[i] = sim->lambda_K->v[i] = 0;
+    if (!four_state_has_grains(sim, i)) continue;
+    const struct four_state_numbers k = four_state_numbers(c, nu);
+    sim->p->v[i] = four_state_pressure(c, nu, T, NULL);
+    sim->p_E->v[i] = four_state_contact_pressure(c, nu, T);
+    sim->mu_K->v[i] = scale * sqrt(T) * k.mu;
+    sim->lambda_K->v[i] = scale * sqrt(T) * k.lambda;
+  }
+  field_fill_many(mesh, 5,
+                  (struct field *const[]){sim->nu, sim->p, sim->p_E, sim->mu_K,
+                                          sim->lambda_K});
+  set_upper(sim);
+  set_mobility(sim);
+}
+
+/* Return the pressure of contact on a wall, with the weight of the grains that
+ * lie on the wall: half of those of the leaf, or all of them where they do not
+ * touch each other. */
+static double wall_pressure(const struct four_state *sim, int d, int32_t f) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const int32_t i = mesh->face_owner[f];
+  const double nu = sim->nu->v[i], upper = sim->upper[d]->v[i];
+  const bool low = mesh->face_node[f][1] == i; /* the wall is below */
+  const double g = sim->params->gravity[d] * (low ? -1 : 1);
+  const double part =
+      nu < sim->closure.param[LEE_HUANG_NU_MIN] ? 1 : (low ? 1 - upper : upper);
+  const double rho = sim->closure.param[LEE_HUANG_RHO_D];
+  return sim->p_E->v[i] + part * rho * nu * max2(g, 0) * mesh->h[i];
+}
+
+void four_state_shear(struct four_state *sim, double *const u[]) {
+  strain_shear_rate(sim->grid.mesh, NULL, u, sim->shear_f->v);
+  field_fill_faces(sim->grid.mesh, sim->shear_f);
+}
+
+void four_state_viscosity(struct four_state *sim, double *const u[]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *nu = sim->nu->v, none = sim->keys->nu_vacuum;
+  four_state_shear(sim, u);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      sim->eta_f->v[f] = sim->kappa_f->v[f] = 0;
+      if (nu[node[0]] < none || nu[node[1]] < none) continue;
+      const double p_E =
+          mesh->face_patch[f] >= 0
+              ? wall_pressure(sim, d, f)
+              : 0.5 * (sim->p_E->v[node[0]] + sim->p_E->v[node[1]]);
+      const double mu_E =
+          four_state_contact_viscosity(&sim->closure, p_E, sim->shear_f->v[f]);
+      sim->eta_f->v[f] =
+          mu_E + 0.5 * (sim->mu_K->v[node[0]] + sim->mu_K->v[node[1]]);
+      /* lambda of the stress is kappa - 2/3 eta, and friction has none */
+      sim->kappa_f->v[f] = 2. / 3 * mu_E + 0.5 * (sim->lambda_K->v[node[0]] +
+                                                  sim->lambda_K->v[node[1]]);
+    }
+  }
+  field_fill_faces(mesh, sim->eta_f);
+  field_fill_faces(mesh, sim->kappa_f);
+}
+
+void four_state_face_acceleration(const struct four_state *sim, const double *p,
+                                  double *a_f) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int d = 0; d < DIM; d++) {
+    const double g = sim->params->gravity[d];
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      a_f[f] = mesh->face_patch[f] >= 0
+                   ? 0
+                   : g - sim->mobility_f->v[f] * mesh_gradient(mesh, p, f);
+    }
+  }
+  mesh_fill_faces(mesh, 1, (double *const[]){a_f});
+}
+
+void four_state_acceleration(const struct four_state *sim, const double *a_f,
+                             double *const a[]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int d = 0; d < DIM; d++) {
+    const double *upper = sim->upper[d]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const int32_t *face = mesh->cell_face[i];
+      a[d][i] =
+          (1 - upper[i]) * a_f[face[2 * d]] + upper[i] * a_f[face[2 * d + 1]];
+    }
+  }
+}
+
+void four_state_face_velocity(const struct four_state *sim, double *const u[],
+                              double *u_f) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      double mass[2];
+      lent(sim, d, f, mass);
+      const double M = mass[0] + mass[1];
+      const double u0 = u[d][node[0]], u1 = u[d][node[1]];
+      u_f[f] =
+          M > LEAST_MASS ? (mass[0] * u0 + mass[1] * u1) / M : 0.5 * (u0 + u1);
+      if (mesh->face_patch[f] >= 0) u_f[f] = 0;
+    }
+  }
+}

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/four_state/start.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/four_state/properties.h"
+#include "talus/four_state/state.h"
+#include "talus/four_state/step.h"
+#include "talus/log.h"
+#include "talus/memory.h"
+#include "talus/minmax.h"
+#include "talus/model.h"
+#include "talus/openings.h"
+#include "talus/outline.h"
+#include "talus/shapes.h"
+
+/* Rounds that put columns in balance, and what is left then, of nu. */
+enum { ROUNDS = 60 };
+static const double BALANCED = 1e-12;
+
+/* Solid fraction over the depth below the surface, every `spacing` m. */
+struct depths {
+  int n;
+  double spacing, *nu;
+};
+
+/* Integrate dp/dz = rho_d nu(p) g downwards by the midpoint rule. */
+static struct depths depths_new(const struct four_state *sim, double g,
+                                double most) {
+  enum { N = 4000 };
+  struct depths depths = {N, most / N, MEM_NEW(double, N + 1)};
+  const double pull = sim->closure.param[LEE_HUANG_RHO_D] * g * depths.spacing;
+  double p = 0;
+  for (int k = 0; k <= N; k++) {
+    depths.nu[k] = four_state_packed(&sim->closure, p);
+    const double half = p + 0.5 * pull * depths.nu[k];
+    p += pull * four_state_packed(&sim->closure, half);
+  }
+  return depths;
+}
+
+static double depths_nu(const struct depths *depths, double depth) {
+  const double at = fmax(depth, 0) / depths->spacing;
+  const int k = (int)fmin(at, depths->n - 1);
+  return depths->nu[k] + (at - k) * (depths->nu[k + 1] - depths->nu[k]);
+}
+
+/* Find how far grains reach from x along the vertical axis, against gravity, in
+ * steps of `step` and then by halving. */
+static double depth_below(const struct four_state *sim, int axis, double up,
+                          double step, const double x[3]) {
+  const struct params *params = sim->params;
+  const double most = params->size * params->trees[axis];
+  double at[3] = {x[0], x[1], x[2]}, inside = 0, outside = step;
+  for (; outside < most; inside = outside, outside += step) {
+    at[axis] = x[axis] + up * outside;
+    if (!(params->shape.eval(params->shape.context, at) > 0)) break;
+  }
+  for (int k = 0; k < 40 && outside < most; k++) {
+    const double middle = 0.5 * (inside + outside);
+    at[axis] = x[axis] + up * middle;
+    if (params->shape.eval(params->shape.context, at) > 0)
+      inside = middle;
+    else
+      outside = middle;
+  }
+  const double wall = up > 0 ? params->origin[axis] + most - x[axis]
+                             : x[axis] - params->origin[axis];
+  return min2(inside, wall);
+}
+
+static void fill_state(struct four_state *sim, const struct depths *depths,
+                       int axis, int fineness) {
+  const struct params *params = sim->params;
+  const struct mesh *mesh = sim->grid.mesh;
+  const double up = params->gravity[axis] > 0 ? -1 : 1;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double x[3] = {0};
+    for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
+    int depth = params->level_max - mesh->level[i] + fineness;
+    if (depth > 6) depth = 6;
+    const double c =
+        params->shape.eval
+            ? shape_fraction(params->shape.eval, params->shape.context,
+                             mesh->x[i], mesh->h[i], depth)
+            : 1;
+    double nu = sim->keys->nu_start;
+    if (depths && c > 0)
+      nu = depths_nu(depths,
+                     params->shape.eval
+                         ? depth_below(sim, axis, up, 0.25 * mesh->h[i], x)
+                         : 0);
+    sim->nu->v[i] = c * nu;
+    sim->T->v[i] = 0;
+    for (int e = 0; e < DIM; e++) {
+      const struct function *u = &params->velocity[e];
+      sim->u[e]->v[i] = u->eval && c > 0 ? u->eval(u->context, x) : 0;
+    }
+  }
+}
+
+static void adapt_to_state(struct four_state *sim, const struct depths *depths,
+                           int axis, int fineness) {
+  fill_state(sim, depths, axis, fineness);
+  for (int k = 0; k <= 2 * sim->params->level_max; k++) {
+    if (!four_state_adapt(sim)) break;
+    fill_state(sim, depths, axis, fineness);
+  }
+}
+
+/* Keep surface leaves, which carry nothing, at the loosest packing. */
+static void loosen_surface(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double nu_min = sim->closure.param[LEE_HUANG_NU_MIN];
+  field_fill(mesh, sim->nu);
+  double *nu = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  memcpy(nu, sim->nu->v, (size_t)mesh->ncells * sizeof *nu);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int s = 0; s < NFACE; s++) {
+      if (nu[mesh->stencil[i][stencil_face(s)]] < 0.1 * nu_min)
+        sim->nu->v[i] = min2(sim->nu->v[i], nu_min);
+    }
+  }
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Let grains move along the vertical axis only, and not into the vacuum. */
+static void hold_columns(struct four_state *sim, int axis) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double none = sim->keys->nu_vacuum;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      if (d != axis || min2(sim->nu->v[node[0]], sim->nu->v[node[1]]) < none)
+        sim->mobility_f->v[f] = 0;
+    }
+  }
+  field_fill_faces(mesh, sim->mobility_f);
+}
+
+/* Put columns in the balance that the scheme itself has: grains fall from rest
+ * over dt again and again, until none does. */
+static double settle_once(struct four_state *sim, int axis, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double most = 0;
+  double *cell[2];
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, 2, cell);
+  double *p = cell[0], *nu = cell[1];
+  double *a_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  four_state_properties(sim);
+  hold_columns(sim, axis);
+  four_state_face_acceleration(sim, sim->p->v, a_f);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    sim->u_f->v[f] = sim->mobility_f->v[f] > 0 ? dt * a_f[f] : 0;
+  }
+  struct granular_pressure by = four_state_material(sim, "settle");
+  by.tolerance = BALANCED;
+  granular_pressure_solve(&by, dt, sim->u_f->v, p, nu, sim->flux->v);
+  scratch_give(&sim->scratch, "settle");
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    most = max2(most, fabs(nu[i] - sim->nu->v[i]));
+    sim->nu->v[i] = nu[i];
+  }
+  mesh_touch(mesh, sim->nu->v);
+  scratch_give(&sim->scratch, __func__);
+  return mesh_max(mesh, most);
+}
+
+static void settle(struct four_state *sim, int axis) {
+  const struct params *params = sim->params;
+  const double g = fabs(params->gravity[axis]);
+  const double dt = 0.1 * sqrt(params->size / g);
+  double change = 1;
+  loosen_surface(sim);
+  for (int k = 0; k < ROUNDS && change > BALANCED; k++)
+    change = settle_once(sim, axis, dt);
+  log_info("grains begin in balance, to %.2g of their solid fraction", change);
+}
+
+static void check_boundaries(const struct params *params) {
+  for (int b = 0; b < params->nboundaries; b++) {
+    const enum boundary_type type = params->boundary[b].type;
+    if (type == BOUNDARY_INFLOW || type == BOUNDARY_OUTFLOW)
+      USER_ERROR(
+          "model = \"four_state\" has no inflow and no outflow: its grains are "
+          "in a vacuum, so take a wall (\"slip\", \"no_slip\") that they do "
+          "not "
+          "reach");
+  }
+}
+
+struct four_state *four_state_new(const struct params *params,
+                                  const struct model_start *start) {
+  struct forest_layout layout;
+  check_boundaries(params);
+  grid_layout(params, &layout);
+  const int level =
+      params->ncriteria > 0 ? params->level_min : params->level_max;
+  struct four_state *sim =
+      four_state_new_on(params, forest_new(MPI_COMM_WORLD, &layout, level));
+  sim->grid.most_leaves = start->most_leaves;
+  const int axis = outline_axis(params->gravity);
+  const bool balance = sim->keys->start == FOUR_STATE_BALANCE &&
+                       params->gravity[axis] != 0 && params->shape.eval;
+  struct depths depths = {0};
+  if (balance)
+    depths = depths_new(sim, fabs(params->gravity[axis]),
+                        params->size * params->trees[axis]);
+  const struct depths *fill = balance ? &depths : NULL;
+  if (params->ncriteria > 0) {
+    adapt_to_state(sim, fill, axis, 0);
+    adapt_to_state(sim, fill, axis, 3);
+  } else {
+    fill_state(sim, fill, axis, 3);
+  }
+  openings_check(&sim->grid);
+  if (balance) settle(sim, axis);
+  mem_free(depths.nu);
+  return sim;
+}

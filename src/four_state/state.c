@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/four_state/state.h"
+
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/memory.h"
+#include "talus/minmax.h"
+#include "talus/openings.h"
+#include "talus/remap.h"
+
+/* Set the conditions of one boundary for velocity, on a patch across `axis`. */
+static void set_patch(struct four_state *sim, int patch, int axis,
+                      const struct boundary *boundary) {
+  for (int e = 0; e < DIM; e++) {
+    struct bc *bc = &sim->u[e]->bc[patch];
+    *bc = (struct bc){BC_DIRICHLET, 0, 0};
+    if (e == axis) continue;
+    if (boundary->type == BOUNDARY_NO_SLIP) {
+      bc->value = boundary->velocity[e];
+    } else if (boundary->type == BOUNDARY_NAVIER) {
+      bc->type = BC_ROBIN, bc->length = boundary->slip_length;
+    } else {
+      bc->type = BC_NEUMANN;
+    }
+  }
+}
+
+static void set_boundaries(struct four_state *sim) {
+  const struct params *params = sim->params;
+  for (int side = 0; side < NFACE; side++) {
+    set_patch(sim, side, side / 2, &params->boundary[side]);
+  }
+  for (int b = 6; b < params->nboundaries; b++) {
+    for (int axis = 0; axis < DIM; axis++) {
+      set_patch(sim, openings_patch_number(b, axis), axis,
+                &params->boundary[b]);
+    }
+  }
+}
+
+/* Return the limited slope along d over the old leaf i. */
+static double old_slope(const struct remap *remap, const double *v, int32_t i,
+                        int d) {
+  const int32_t *node = remap->mesh->stencil[i];
+  const double lower = v[node[stencil_face(2 * d)]];
+  const double upper = v[node[stencil_face(2 * d + 1)]];
+  return granular_minmod(v[i] - lower, upper - v[i]);
+}
+
+/* Lay new leaves on limited slopes of the old one: the mean is kept and nothing
+ * falls below 0. */
+static double divide_mass(const struct remap *remap, const struct field *field,
+                          int32_t leaf) {
+  double lo[DIM], hi[DIM];
+  const int32_t i = remap_box(remap, leaf, lo, hi);
+  double value = field->v[i];
+  for (int d = 0; d < DIM; d++) {
+    value += 0.5 * (lo[d] + hi[d]) * old_slope(remap, field->v, i, d);
+  }
+  return value;
+}
+
+/* Take the mean of what each grain has. */
+static double merge_by_mass(const struct remap *remap,
+                            const struct field *field, int32_t leaf) {
+  const struct four_state *sim = field->context;
+  const int32_t first = remap->map->first[leaf];
+  double sum = 0, mass = 0;
+  for (int32_t i = first; i < first + remap->map->count[leaf]; i++) {
+    sum += sim->nu->v[i] * field->v[i];
+    mass += sim->nu->v[i];
+  }
+  return mass > 0 ? sum / mass : 0;
+}
+
+static const struct field_rule mass_rule = {divide_mass, remap_mean};
+static const struct field_rule grain_rule = {remap_value, merge_by_mass};
+
+static struct field *add(struct four_state *sim, const char *name,
+                         const char *unit, const char *title,
+                         const struct field_rule *rule, bool output) {
+  struct field *field = fields_add(&sim->grid.fields, sim->grid.mesh, name,
+                                   unit, title, FIELD_CELL, rule);
+  field->output = output;
+  field->restart = rule != NULL;
+  field->context = sim;
+  return field;
+}
+
+static struct field *add_face(struct four_state *sim, const char *name) {
+  return fields_add(&sim->grid.fields, sim->grid.mesh, name, "", "", FIELD_FACE,
+                    NULL);
+}
+
+static void add_state(struct four_state *sim) {
+  static const char *const velocity[] = {"velocity_x", "velocity_y",
+                                         "velocity_z"};
+  sim->nu = add(sim, "solid_fraction", "1", "solid fraction of grains",
+                &mass_rule, true);
+  sim->nu->low = 0, sim->nu->high = 1;
+  for (int d = 0; d < DIM; d++) {
+    sim->u[d] = add(sim, velocity[d], "m/s", "velocity", &grain_rule, true);
+    sim->u[d]->component = d;
+  }
+  sim->T = add(sim, "temperature", "m^2/s^2", "granular temperature",
+               &grain_rule, true);
+  sim->T->low = 0, sim->T->high = HUGE_VAL;
+}
+
+/* Add a field that is made when it is written. */
+static struct field *add_output(struct four_state *sim, const char *name,
+                                const char *title) {
+  struct field *field = add(sim, name, "1", title, NULL, true);
+  field->on_demand = true;
+  mem_free(field->v);
+  field->v = NULL;
+  return field;
+}
+
+static void add_made(struct four_state *sim) {
+  static const char *const upper[] = {"upper_x", "upper_y", "upper_z"};
+  sim->p = add(sim, "pressure", "Pa", "pressure", NULL, true);
+  sim->p_E = add(sim, "contact_pressure", "Pa", "", NULL, false);
+  sim->mu_K = add(sim, "kinetic_viscosity", "Pa s", "", NULL, false);
+  sim->lambda_K = add(sim, "bulk_viscosity", "Pa s", "", NULL, false);
+  for (int d = 0; d < DIM; d++) {
+    sim->upper[d] = add(sim, upper[d], "1", "", NULL, false);
+  }
+  sim->c = add(sim, "fraction", "1", "solid fraction over that at the start",
+               NULL, true);
+  sim->contact =
+      add_output(sim, "pE_over_p", "part of the pressure by enduring contact");
+  sim->name =
+      add_output(sim, "state", "0 solid 1 quasi-static 2 dense 3 inertial");
+  sim->mobility_f = add_face(sim, "mobility");
+  sim->eta_f = add_face(sim, "face_viscosity");
+  sim->kappa_f = add_face(sim, "face_bulk_viscosity");
+  sim->shear_f = add_face(sim, "face_shear_rate");
+  sim->u_f = add_face(sim, "face_velocity");
+  sim->flux = add_face(sim, "face_flux");
+  scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, 2 * DIM + 4,
+               DIM + 3);
+}
+
+struct four_state *four_state_new_on(const struct params *params,
+                                     struct forest *forest) {
+  struct four_state *sim = MEM_NEW(struct four_state, 1);
+  sim->model.grid = &sim->grid;
+  sim->params = params;
+  sim->keys = params->own;
+  const char *wrong = four_state_closure_init(&sim->closure, sim->keys->param,
+                                              sim->keys->knudsen);
+  if (wrong != NULL) USER_ERROR("grains: %s", wrong);
+  grid_init(&sim->grid, params, forest);
+  add_state(sim);
+  add_made(sim);
+  set_boundaries(sim);
+  return sim;
+}
+
+void four_state_destroy(struct four_state *sim) {
+  if (!sim) return;
+  grid_release(&sim->grid);
+  mem_free(sim);
+}
+
+/* Set what the criteria follow: 1 where grains touch, less where they are
+ * loose, 0 where there are hardly any. */
+static void set_followed(struct four_state *sim) {
+  const double full = 0.9 * sim->keys->param[LEE_HUANG_NU_MIN];
+  const double none = 10 * sim->keys->nu_vacuum;
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double nu = sim->nu->v[i];
+    sim->c->v[i] = nu < none ? 0 : min2(nu / full, 1);
+  }
+  mesh_touch(mesh, sim->c->v);
+}
+
+bool four_state_adapt(struct four_state *sim) {
+  const struct followed followed = {.c = sim->c, .u = sim->u};
+  set_followed(sim);
+  sim->travel = 0;
+  return adapt_grid(&sim->grid, &followed);
+}

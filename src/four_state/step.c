@@ -1,0 +1,373 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The time step of the four-state model [lee_huang_chiew_2015], from t^n to t^n
+ * + dt.
+ *
+ * It begins with the solid fraction nu, the velocity u and the granular
+ * temperature T of leaves. _f is at faces, A the mean over the two faces of a
+ * leaf across an axis by the mass that they have of the leaf, and F a mean over
+ * the two leaves of a face by the same masses (properties.h). M is the mass of
+ * a face. In the order of the calls:
+ *
+ * four_state_time_step   dt, by the flow
+ * four_state_properties  p, p_E, mu_K, lambda_K of nu^n and T^n; masses
+ * predict                twice, with gamma of u^n and then of u*
+ *     a_f = g - grad p/(rho_d M)
+ *     rho_d nu u* - dt div[2 mu D(u*) + (lambda_K - 2/3 mu_K) div u* I]
+ *         = rho_d nu (u^n + dt A(a_f))
+ *     mu = mu_K + p_E eta_S (1 - exp(-n gamma/2))/gamma
+ *     u* <- u* - dt A(a_f)
+ * press                  granular_pressure.h
+ *     u_f = F(u*) + dt a_f - dt/(rho_d M) grad(p^{n+1} - p)
+ *     nu^{n+1} = nu^n - dt div(nu_f u_f),  p^{n+1} = P(nu^{n+1}, T^n)
+ *     u <- u* + dt A(g - grad p^{n+1}/(rho_d M))
+ * carry                  u and T with the same fluxes
+ *     nu^{n+1} q = nu^n q - dt div(nu_f u_f q_f)
+ * four_state_heat        conduction, delta grad nu, production, collisions
+ * calm_vacuum            leaves without grains take the velocity of those that
+ *                        have some around them
+ * four_state_adapt       if grains have moved far enough
+ *
+ * Invariants between steps
+ * 1. nu, u, T are valid on leaves; every stage fills what it reads.
+ * 2. 0 <= nu, 0 <= T <= vacuum.T_max.
+ */
+#include "talus/four_state/step.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/four_state/properties.h"
+#include "talus/four_state/state.h"
+#include "talus/four_state/temperature.h"
+#include "talus/four_state/time_step.h"
+#include "talus/log.h"
+#include "talus/minmax.h"
+#include "talus/viscous.h"
+
+/* A failed step is repeated at most RETRIES times, each time with dt reduced by
+ * RETRY_FACTOR. */
+enum { RETRIES = 8, PICARD = 2, MOST_NEWTON = 30 };
+#define RETRY_FACTOR 0.5
+
+/* A leaf may give away this part of its grains in a step. */
+#define MOST_GIVEN 0.95
+/* R of granular_pressure.h is bounded by this times solver.tolerance_pressure.
+ */
+#define PRESSURE_FACTOR 1e-5
+/* Slope of P where there is no pressure, Pa. */
+#define LEAST_SLOPE 1e-4
+/* Solid fractions below this count as this in the viscous equation. */
+#define LEAST_NU 1e-6
+/* A stalled viscous solve passes within STALL_SLACK times its tolerance, or
+ * below STALL_FLOOR, m/s. */
+#define STALL_SLACK 10
+#define STALL_FLOOR 1e-12
+
+static double find_pressure(const void *context, int32_t i, double nu,
+                            double *slope) {
+  const struct four_state *sim = context;
+  return four_state_pressure(&sim->closure, max2(nu, 0), sim->T->v[i], slope);
+}
+
+static double find_fraction(const void *context, int32_t i, double p,
+                            double from) {
+  const struct four_state *sim = context;
+  return four_state_solid_fraction(&sim->closure, p, sim->T->v[i],
+                                   max2(from, 0));
+}
+
+struct granular_pressure four_state_material(struct four_state *sim,
+                                             const char *taker) {
+  double *cell[DIM + 3], *face[2];
+  scratch_take(&sim->scratch, FIELD_CELL, taker, DIM + 3, cell);
+  scratch_take(&sim->scratch, FIELD_FACE, taker, 2, face);
+  struct granular_pressure by = {
+      .mesh = sim->grid.mesh,
+      .hierarchy = sim->grid.hierarchy,
+      .material = {sim, find_pressure, find_fraction},
+      .mobility_f = sim->mobility_f->v,
+      .nu_old = sim->nu->v,
+      .p_old = sim->p->v,
+      .least_slope = LEAST_SLOPE,
+      .tolerance = PRESSURE_FACTOR * sim->params->tolerance_pressure,
+      .max_newton = MOST_NEWTON,
+      .max_iterations = sim->params->max_iterations,
+      .change = cell[DIM],
+      .mass = cell[DIM + 1],
+      .rhs = cell[DIM + 2],
+      .u_start = face[0],
+      .alpha = face[1]};
+  for (int d = 0; d < DIM; d++) by.slope[d] = cell[d];
+  return by;
+}
+
+/* Find the largest speed of the grains, the walls and free fall over dt. */
+static double speed_scale(const struct four_state *sim, double dt) {
+  double most = 1e-300;
+  for (int d = 0; d < DIM; d++) {
+    most = max2(most, dt * fabs(sim->params->gravity[d]));
+    for (int k = 0; k < MESH_MAX_PATCHES; k++) {
+      most = max2(most, fabs(sim->u[d]->bc[k].value));
+    }
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+      if (four_state_has_grains(sim, i))
+        most = max2(most, fabs(sim->u[d]->v[i]));
+    }
+  }
+  return mesh_max(sim->grid.mesh, most);
+}
+
+/* Add the solves of a step up: all iterations, the worst result. */
+static void add_solve(struct solve_stats *sum, const struct solve_stats *next) {
+  const int iterations = sum->iterations + next->iterations;
+  if (sum->iterations == 0 || next->residual_after > sum->residual_after)
+    *sum = *next;
+  sum->iterations = iterations;
+}
+
+/* Solve the viscous equation of mass [nleaves] and rhs; u: guess, solution. */
+static void diffuse(struct four_state *sim, double dt, const double *mass,
+                    double *const rhs[DIM], double *const u[DIM]) {
+  const struct bc *bc[DIM];
+  const struct viscosity viscosity = {.eta_f = sim->eta_f->v,
+                                      .kappa_f = sim->kappa_f->v};
+  for (int e = 0; e < DIM; e++) bc[e] = sim->u[e]->bc;
+  const struct solve_stats stats =
+      viscous_solve(sim->grid.mesh, sim->grid.hierarchy, mass, &viscosity, dt,
+                    rhs, bc, sim->params->tolerance_viscous * sim->scale,
+                    sim->params->max_iterations, u);
+  add_solve(&sim->viscous, &stats);
+}
+
+/* Return what friction and viscosity have taken from the grains, J/m (3D: J):
+ * rhs/mass is the velocity without, u with them. */
+static double viscous_loss(const struct four_state *sim, const double *mass,
+                           double *const rhs[DIM], double *const u[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double sum = 0;
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const double before = rhs[e][i] / mass[i], after = u[e][i];
+      sum += 0.5 * mass[i] * (before - after) * (before + after) *
+             mesh_volume(mesh, i);
+    }
+  }
+  return mesh_sum(mesh, sum);
+}
+
+/* Find u* and a_f; a [DIM][nleaves] scratch. */
+static void predict(struct four_state *sim, double dt, double *a_f) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double rho = sim->closure.param[LEE_HUANG_RHO_D];
+  double *u[DIM], *cell[2 * DIM + 1];
+  field_arrays(sim->u, u);
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, 2 * DIM + 1, cell);
+  double **a = cell, **rhs = cell + DIM, *mass = cell[2 * DIM];
+  four_state_face_acceleration(sim, sim->p->v, a_f);
+  four_state_acceleration(sim, a_f, a);
+  field_fill_many(mesh, DIM, sim->u);
+  four_state_viscosity(sim, u);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    mass[i] = rho * max2(sim->nu->v[i], LEAST_NU);
+    for (int e = 0; e < DIM; e++) {
+      u[e][i] += dt * a[e][i];
+      rhs[e][i] = mass[i] * u[e][i];
+    }
+  }
+  sim->scale = speed_scale(sim, dt);
+  sim->viscous = (struct solve_stats){0};
+  for (int k = 0; k < PICARD; k++) {
+    if (k > 0) four_state_viscosity(sim, u);
+    diffuse(sim, dt, mass, rhs, u);
+  }
+  four_state_shear(sim, u);
+  sim->dissipated += viscous_loss(sim, mass, rhs, u);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] -= dt * a[e][i];
+    mesh_touch(mesh, u[e]);
+  }
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Find p, u_f and the flux of the end of the step, u without advection, and
+ * nu_new [nleaves]. */
+static void press(struct four_state *sim, double dt, double *a_f,
+                  double *nu_new) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *u[DIM], *a[DIM], *u_f = sim->u_f->v;
+  field_arrays(sim->u, u);
+  double *p = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  field_fill_many(mesh, DIM, sim->u);
+  four_state_face_velocity(sim, u, u_f);
+  for (int32_t f = 0; f < mesh->nfaces; f++) u_f[f] += dt * a_f[f];
+  const struct granular_pressure by = four_state_material(sim, "pressure");
+  sim->pressure =
+      granular_pressure_solve(&by, dt, u_f, p, nu_new, sim->flux->v);
+  scratch_give(&sim->scratch, "pressure");
+  memcpy(sim->p->v, p, (size_t)mesh->ncells * sizeof *p);
+  scratch_give(&sim->scratch, __func__);
+  scratch_take(&sim->scratch, FIELD_CELL, "acceleration", DIM, a);
+  four_state_face_acceleration(sim, sim->p->v, a_f);
+  four_state_acceleration(sim, a_f, a);
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * a[e][i];
+    mesh_touch(mesh, u[e]);
+  }
+  scratch_give(&sim->scratch, "acceleration");
+}
+
+/* Carry q with the grains; q is filled here. */
+static void carry_one(struct four_state *sim, double dt, struct field *q,
+                      const double *nu_new, double *slope, double *flux) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *u_f = sim->u_f->v, *nu = sim->nu->v;
+  field_fill(mesh, q);
+  for (int d = 0; d < DIM; d++) {
+    granular_slopes(mesh, d, q->v, slope);
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      flux[f] =
+          sim->flux->v[f] * granular_donor(mesh, f, dt, u_f[f], q->v, slope);
+    }
+  }
+  mesh_fill_faces(mesh, 1, &flux);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double store = nu[i] * q->v[i] - dt * mesh_divergence(mesh, flux, i);
+    q->v[i] = nu_new[i] > LEAST_NU ? store / nu_new[i] : 0;
+  }
+  mesh_touch(mesh, q->v);
+}
+
+static void carry(struct four_state *sim, double dt, const double *nu_new) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *slope = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  double *flux = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  for (int e = 0; e < DIM; e++) {
+    carry_one(sim, dt, sim->u[e], nu_new, slope, flux);
+  }
+  carry_one(sim, dt, sim->T, nu_new, slope, flux);
+  scratch_give(&sim->scratch, __func__);
+  memcpy(sim->nu->v, nu_new, (size_t)mesh->nleaves * sizeof *nu_new);
+  mesh_touch(mesh, sim->nu->v);
+}
+
+/* Give leaves without grains the velocity of the grains around them. */
+static void calm_vacuum(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *nu = sim->nu->v;
+  field_fill(mesh, sim->nu);
+  for (int e = 0; e < DIM; e++) {
+    double *u = sim->u[e]->v;
+    field_fill(mesh, sim->u[e]);
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      double mass = 0, sum = 0;
+      if (four_state_has_grains(sim, i)) continue;
+      for (int s = 0; s < NSTENCIL; s++) {
+        const int32_t node = mesh->stencil[i][s];
+        if (nu[node] < sim->keys->nu_vacuum) continue;
+        mass += nu[node];
+        sum += nu[node] * u[node];
+      }
+      u[i] = mass > 0 ? sum / mass : 0;
+    }
+    mesh_touch(mesh, u);
+  }
+}
+
+static void lap(struct four_state *sim, enum four_state_stage stage) {
+  stopwatch_lap(&sim->model.stopwatch, stage);
+}
+
+/* Advance the state by dt; returns the largest part of its grains that a leaf
+ * has given away. */
+static double advance_state(struct four_state *sim, double dt) {
+  double *a_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  double *nu_new = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  four_state_properties(sim), lap(sim, FOUR_STATE_CLOSURES);
+  predict(sim, dt, a_f), lap(sim, FOUR_STATE_VISCOUS);
+  press(sim, dt, a_f, nu_new), lap(sim, FOUR_STATE_PRESSURE);
+  const double given = four_state_given(sim, dt, sim->nu->v);
+  carry(sim, dt, nu_new), lap(sim, FOUR_STATE_TRANSPORT);
+  scratch_give(&sim->scratch, __func__);
+  four_state_heat(sim, dt), lap(sim, FOUR_STATE_TEMPERATURE);
+  calm_vacuum(sim), lap(sim, FOUR_STATE_OTHER);
+  return given;
+}
+
+static bool is_solved(const struct solve_stats *stats, double tolerance) {
+  return stats->status == SOLVE_CONVERGED ||
+         stats->residual_after <= max2(STALL_SLACK * tolerance, STALL_FLOOR);
+}
+
+/* Say what is wrong with the step that was taken; returns whether it is. */
+static bool has_failed(const struct four_state *sim, double given) {
+  const long long step = (long long)sim->model.step;
+  const char *wild = fields_not_finite(&sim->grid.fields, sim->grid.mesh);
+  const double tolerance = sim->params->tolerance_viscous * sim->scale;
+  if (wild != NULL) {
+    log_info("step %lld: %s is not finite", step, wild);
+  } else if (sim->pressure.status != SOLVE_CONVERGED) {
+    log_info(
+        "step %lld: pressure and mass do not fit by %.3g after %d Newton "
+        "iterations",
+        step, sim->pressure.residual, sim->pressure.newton);
+  } else if (!is_solved(&sim->viscous, tolerance)) {
+    log_info(
+        "step %lld: viscous solve stalled after %d iterations, residual "
+        "%g, tolerance %g",
+        step, sim->viscous.iterations, sim->viscous.residual_after, tolerance);
+  } else if (given > MOST_GIVEN) {
+    log_info("step %lld: a leaf gives away %.3g of its grains", step, given);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/* Take a step of at most dt_max; returns its dt, or 0 with the state of before.
+ */
+static double find_step(struct four_state *sim, double dt_max) {
+  const double dissipated = sim->dissipated;
+  fields_save(&sim->grid.fields, sim->grid.mesh);
+  for (int attempt = 0; attempt <= RETRIES; attempt++) {
+    const double dt = four_state_time_step(sim, dt_max);
+    const double given = advance_state(sim, dt);
+    if (!has_failed(sim, given)) return dt;
+    fields_restore(&sim->grid.fields, sim->grid.mesh);
+    sim->dissipated = dissipated;
+    dt_max = RETRY_FACTOR * dt;
+    log_info("step %lld: dt %.3g is repeated with at most %.3g",
+             (long long)sim->model.step, dt, dt_max);
+  }
+  return 0;
+}
+
+/* Add how many cells grains may have moved. */
+static void add_travel(struct four_state *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (!four_state_has_grains(sim, i)) continue;
+    for (int d = 0; d < DIM; d++) {
+      most = max2(most, mesh_edges(mesh, i, fabs(sim->u[d]->v[i]) * dt));
+    }
+  }
+  sim->travel += mesh_max(mesh, most);
+}
+
+int four_state_step(struct four_state *sim, double dt_max) {
+  stopwatch_start(&sim->model.stopwatch);
+  fields_touch(&sim->grid.fields, sim->grid.mesh);
+  const double dt = find_step(sim, dt_max);
+  const char *taker = scratch_taker(&sim->scratch);
+  CHECK(!taker, "%s has not given its scratch back", taker);
+  if (dt == 0) return EXIT_NUMERICAL;
+  sim->model.time += dt;
+  sim->model.dt = dt;
+  sim->model.step++;
+  add_travel(sim, dt), lap(sim, FOUR_STATE_OTHER);
+  if (adapt_is_due(&sim->grid, sim->model.step, sim->travel))
+    four_state_adapt(sim);
+  lap(sim, FOUR_STATE_ADAPTATION);
+  return EXIT_DONE;
+}

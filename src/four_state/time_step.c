@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/four_state/time_step.h"
+
+#include <math.h>
+
+#include "talus/four_state/state.h"
+#include "talus/minmax.h"
+
+/* dt is at most this times sqrt(h/|g|) of the finest leaves, and grows by at
+ * most a factor of DT_GROWTH from step to step. */
+#define DT_ACCELERATION 0.0625
+#define DT_GROWTH 1.2
+
+/* Return the largest sum over axes of |u|/h of leaves with grains. */
+static double flow_rate(const struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double sum = 0;
+    if (!four_state_has_grains(sim, i)) continue;
+    for (int d = 0; d < DIM; d++) sum += fabs(sim->u[d]->v[i]);
+    most = max2(most, mesh_edges(mesh, i, sum));
+  }
+  return mesh_max(mesh, most);
+}
+
+double four_state_time_step(const struct four_state *sim, double dt_max) {
+  const struct params *params = sim->params;
+  const double h = params->size / exp2(sim->grid.mesh->level_finest);
+  double g2 = 0, dt = min2(dt_max, params->dt_max);
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  if (g2 > 0) dt = min2(dt, DT_ACCELERATION * sqrt(h / sqrt(g2)));
+  const double rate = flow_rate(sim);
+  if (rate > 0) dt = min2(dt, params->cfl / rate);
+  if (sim->model.dt > 0) dt = min2(dt, DT_GROWTH * sim->model.dt);
+  return dt < dt_max && dt_max < 2 * dt ? 0.5 * dt_max : dt;
+}
+
+double four_state_given(const struct four_state *sim, double dt,
+                        const double *nu_old) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *flux = sim->flux->v;
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double out = 0;
+    if (nu_old[i] < sim->keys->nu_vacuum) continue;
+    for (int s = 0; s < NFACE; s++) {
+      const double v = mesh_side(mesh, flux, i, s);
+      out += max2(s & 1 ? v : -v, 0);
+    }
+    most = max2(most, dt * out / (mesh_width(mesh, i) * nu_old[i]));
+  }
+  return mesh_max(mesh, most);
+}
