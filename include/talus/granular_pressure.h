@@ -12,9 +12,8 @@
  *
  * symmetric and an M-matrix, solved by poisson_solve. Where q < 0 grains
  * expand and nu <- nu + q/P'; where q > 0 they are compressed and nu <- P^-1(p
- * + q): P is convex, so nu never crosses a pole and no damping is needed
- * [brugnano_casulli_2008]. At the end nu is that of the fluxes, so that mass is
- * kept to round-off.
+ * + q): P is convex, so nu never crosses a pole and no damping is needed. At
+ * the end nu is that of the fluxes, so that mass is kept to round-off.
  */
 #ifndef TALUS_GRANULAR_PRESSURE_H
 #define TALUS_GRANULAR_PRESSURE_H
@@ -26,7 +25,7 @@
 
 struct hierarchy;
 
-/* What grains are made of, leaf by leaf. */
+/* Tells what grains are made of, leaf by leaf. */
 struct granular_material {
   const void *context;
   /* Return P(nu), Pa, and its slope. */
@@ -43,7 +42,10 @@ struct granular_pressure {
   struct granular_material material;
   const double *mobility_f; /* [nfaces_all] m_f, m^3/kg, 0 on closed patches */
   const double *nu_old;     /* [ncells] nu^n, filled */
-  const double *p_old;      /* [ncells] p^n, filled */
+  const double *p_old;      /* [ncells] p^n, filled as p will be */
+  const double *rho;        /* [ncells] filled, > 0: by it p is interpolated to
+                               the children of coarse leaves
+                               (mesh_fill_potential) */
   double least_slope;       /* of P that is taken for P', Pa, > 0 */
   double tolerance;         /* on max |R| */
   int max_newton, max_iterations;

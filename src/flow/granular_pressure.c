@@ -28,9 +28,24 @@ double granular_donor(const struct mesh *mesh, int32_t f, double dt, double u_f,
                       const double *v, const double *slope) {
   const int side = u_f > 0 ? 0 : 1;
   const int32_t leaf = mesh->face_leaf[f][side];
-  if (leaf < 0) return v[mesh->face_node[f][side]];
-  const double reach = 1 - mesh_edges(mesh, leaf, fabs(u_f) * dt);
-  return v[leaf] + (side ? -0.5 : 0.5) * max2(reach, 0) * slope[leaf];
+  const double value = v[mesh->face_node[f][side]];
+  if (leaf < 0) return value;
+  const double reach = 1 - mesh_face_edges(mesh, f, fabs(u_f) * dt);
+  const double half =
+      0.5 * mesh_edges(mesh, leaf, mesh->face_h[f]) * max2(reach, 0);
+  return value + (side ? -half : half) * slope[leaf];
+}
+
+/* Return the solid fraction that passes a face: that of the donor, not below 0
+ * and at most twice that of the leaf where the donor is a child of a coarse
+ * one. */
+static double passing(const struct granular_pressure *by, int d, int32_t f,
+                      double dt, double u_f) {
+  const struct mesh *mesh = by->mesh;
+  const int32_t leaf = mesh->face_leaf[f][u_f > 0 ? 0 : 1];
+  const double nu = granular_donor(mesh, f, dt, u_f, by->nu_old, by->slope[d]);
+  if (leaf < 0) return nu;
+  return min2(max2(nu, 0), 2 * by->nu_old[leaf]);
 }
 
 /* Reduce the fluxes out of leaves that would give away more than MOST_GIVEN of
@@ -64,7 +79,7 @@ static void move(const struct granular_pressure *by, double dt, double *p,
                  double *u_f, double *flux) {
   const struct mesh *mesh = by->mesh;
   const struct bc *bc = NEUMANN;
-  mesh_fill(mesh, 1, &p, &bc, false);
+  mesh_fill_potential(mesh, by->rho, 1, &p, &bc, false);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
@@ -99,9 +114,8 @@ static void set_alpha(const struct granular_pressure *by, double dt,
   const struct mesh *mesh = by->mesh;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double nu = u_f[f] != 0 ? flux[f] / u_f[f]
-                                    : granular_donor(mesh, f, dt, 0, by->nu_old,
-                                                     by->slope[d]);
+      const double nu =
+          u_f[f] != 0 ? flux[f] / u_f[f] : passing(by, d, f, dt, 0);
       by->alpha[f] = dt * dt * max2(nu, 0) * by->mobility_f[f];
     }
   }
@@ -122,7 +136,7 @@ static struct solve_stats newton(const struct granular_pressure *by,
   memset(q, 0, (size_t)mesh->ncells * sizeof *q);
   const double tolerance = max2(LINEAR_GAIN * size, 0.1 * by->tolerance);
   const struct solve_stats stats =
-      poisson_solve(mesh, by->hierarchy, by->alpha, by->mass, NULL, by->rhs,
+      poisson_solve(mesh, by->hierarchy, by->alpha, by->mass, by->rho, by->rhs,
                     NEUMANN, tolerance, by->max_iterations, q);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double unused;

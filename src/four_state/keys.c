@@ -61,7 +61,7 @@ static const struct key KEYS[] = {
 };
 /* clang-format on */
 
-/* What is incompressible, or gas, or flows in or out, means nothing here. */
+/* Keys that mean nothing to compressible grains without gas. */
 static const char *const REFUSED[] = {"grains.density", "tracers", NULL};
 
 const struct model_keys four_state_model_keys = {

@@ -9,9 +9,9 @@
 
 /* A face that leads to no grains weighs this part of one that does, so that
  * parts are defined where there are none around. */
-static const double LIGHT = 1e-3;
-/* Masses below this count as this. */
-static const double LEAST_MASS = 1e-12;
+static const double LIGHT = 1e-12;
+/* Masses below this are none. */
+static const double NO_MASS = 1e-30;
 
 static double weight(double here, double there) {
   const double nu = max2(there, 0);
@@ -51,12 +51,33 @@ static void set_mobility(struct four_state *sim) {
       const int32_t *node = mesh->face_node[f];
       double mass[2];
       lent(sim, d, f, mass);
-      const double least = 0.5 * max2(nu[node[0]], nu[node[1]]);
-      const double M = max2(max2(mass[0] + mass[1], least), LEAST_MASS);
-      sim->mobility_f->v[f] = mesh->face_patch[f] >= 0 ? 0 : 1 / (rho * M);
+      const double most = max2(nu[node[0]], nu[node[1]]);
+      const double M = max2(mass[0] + mass[1], 0.5 * most);
+      const bool moves =
+          mesh->face_patch[f] < 0 && most >= sim->keys->nu_vacuum;
+      sim->mobility_f->v[f] = moves ? 1 / (rho * M) : 0;
     }
   }
   field_fill_faces(mesh, sim->mobility_f);
+}
+
+/* Fill what was set, and keep interpolated values from falling below 0; p is
+ * interpolated by weight, since beside the surface leaves that are nearly empty
+ * would get the pressure of those below. */
+static void fill_positive(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct bc *bc = sim->p->bc;
+  struct field *const field[] = {sim->nu, sim->weight, sim->p_E, sim->mu_K,
+                                 sim->lambda_K};
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    sim->weight->v[i] = max2(sim->nu->v[i], sim->keys->nu_vacuum);
+  field_fill_many(mesh, 5, field);
+  for (int k = 0; k < 5; k++) {
+    const double least = field[k] == sim->weight ? sim->keys->nu_vacuum : 0;
+    for (int32_t i = mesh->begin_virtual; i < mesh->ncells; i++)
+      field[k]->v[i] = max2(field[k]->v[i], least);
+  }
+  mesh_fill_potential(mesh, sim->weight->v, 1, &sim->p->v, &bc, false);
 }
 
 void four_state_properties(struct four_state *sim) {
@@ -73,9 +94,7 @@ void four_state_properties(struct four_state *sim) {
     sim->mu_K->v[i] = scale * sqrt(T) * k.mu;
     sim->lambda_K->v[i] = scale * sqrt(T) * k.lambda;
   }
-  field_fill_many(mesh, 5,
-                  (struct field *const[]){sim->nu, sim->p, sim->p_E, sim->mu_K,
-                                          sim->lambda_K});
+  fill_positive(sim);
   set_upper(sim);
   set_mobility(sim);
 }
@@ -164,7 +183,7 @@ void four_state_face_velocity(const struct four_state *sim, double *const u[],
       const double M = mass[0] + mass[1];
       const double u0 = u[d][node[0]], u1 = u[d][node[1]];
       u_f[f] =
-          M > LEAST_MASS ? (mass[0] * u0 + mass[1] * u1) / M : 0.5 * (u0 + u1);
+          M > NO_MASS ? (mass[0] * u0 + mass[1] * u1) / M : 0.5 * (u0 + u1);
       if (mesh->face_patch[f] >= 0) u_f[f] = 0;
     }
   }

@@ -121,6 +121,7 @@ static void add_made(struct four_state *sim) {
   static const char *const upper[] = {"upper_x", "upper_y", "upper_z"};
   sim->p = add(sim, "pressure", "Pa", "pressure", NULL, true);
   sim->p_E = add(sim, "contact_pressure", "Pa", "", NULL, false);
+  sim->weight = add(sim, "weight", "1", "", NULL, false);
   sim->mu_K = add(sim, "kinetic_viscosity", "Pa s", "", NULL, false);
   sim->lambda_K = add(sim, "bulk_viscosity", "Pa s", "", NULL, false);
   for (int d = 0; d < DIM; d++) {

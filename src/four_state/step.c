@@ -89,6 +89,7 @@ struct granular_pressure four_state_material(struct four_state *sim,
       .mobility_f = sim->mobility_f->v,
       .nu_old = sim->nu->v,
       .p_old = sim->p->v,
+      .rho = sim->weight->v,
       .least_slope = LEAST_SLOPE,
       .tolerance = PRESSURE_FACTOR * sim->params->tolerance_pressure,
       .max_newton = MOST_NEWTON,
@@ -156,6 +157,30 @@ static double viscous_loss(const struct four_state *sim, const double *mass,
   return mesh_sum(mesh, sum);
 }
 
+/* Give leaves without grains the velocity of the grains around them, for
+ * differences across the surface, and fill u. nu is filled. */
+static void calm_vacuum(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *nu = sim->nu->v;
+  for (int e = 0; e < DIM; e++) {
+    double *u = sim->u[e]->v;
+    field_fill(mesh, sim->u[e]);
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      double mass = 0, sum = 0;
+      if (four_state_has_grains(sim, i)) continue;
+      for (int s = 0; s < NSTENCIL; s++) {
+        const int32_t node = mesh->stencil[i][s];
+        if (nu[node] < sim->keys->nu_vacuum) continue;
+        mass += nu[node];
+        sum += nu[node] * u[node];
+      }
+      u[i] = mass > 0 ? sum / mass : 0;
+    }
+    mesh_touch(mesh, u);
+    field_fill(mesh, sim->u[e]);
+  }
+}
+
 /* Find u* and a_f; a [DIM][nleaves] scratch. */
 static void predict(struct four_state *sim, double dt, double *a_f) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -180,9 +205,14 @@ static void predict(struct four_state *sim, double dt, double *a_f) {
   for (int k = 0; k < PICARD; k++) {
     if (k > 0) four_state_viscosity(sim, u);
     diffuse(sim, dt, mass, rhs, u);
+    if (k == PICARD - 1) sim->dissipated += viscous_loss(sim, mass, rhs, u);
+    calm_vacuum(sim);
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      if (four_state_has_grains(sim, i)) continue;
+      for (int e = 0; e < DIM; e++) rhs[e][i] = mass[i] * u[e][i];
+    }
   }
   four_state_shear(sim, u);
-  sim->dissipated += viscous_loss(sim, mass, rhs, u);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] -= dt * a[e][i];
     mesh_touch(mesh, u[e]);
@@ -217,17 +247,41 @@ static void press(struct four_state *sim, double dt, double *a_f,
   scratch_give(&sim->scratch, "acceleration");
 }
 
+/* Set keep [>= nleaves + nghosts] to how much of the slope of q counts in what
+ * a leaf gives away: less, the more it gives, so that what stays behind does
+ * not outrun its neighbours. */
+static void find_keep(const struct four_state *sim, double dt, double *keep) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double part = four_state_part_given(sim, dt, i, sim->nu->v[i]);
+    keep[i] = max2(1 - 2 * part, 0);
+  }
+  mesh_fill_ghosts(mesh, 1, &keep);
+}
+
+/* Return q of what passes face f of axis d. */
+static double carried(const struct four_state *sim, int32_t f, double dt,
+                      const double *q, const double *slope,
+                      const double *keep) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double u_f = sim->u_f->v[f];
+  const int32_t leaf = mesh->face_leaf[f][u_f > 0 ? 0 : 1];
+  if (leaf < 0) return 0;
+  const double value = granular_donor(mesh, f, dt, u_f, q, slope);
+  return q[leaf] + keep[leaf] * (value - q[leaf]);
+}
+
 /* Carry q with the grains; q is filled here. */
 static void carry_one(struct four_state *sim, double dt, struct field *q,
-                      const double *nu_new, double *slope, double *flux) {
+                      const double *nu_new, double *const cell[2],
+                      double *flux) {
   const struct mesh *mesh = sim->grid.mesh;
-  const double *u_f = sim->u_f->v, *nu = sim->nu->v;
+  const double *nu = sim->nu->v;
   field_fill(mesh, q);
   for (int d = 0; d < DIM; d++) {
-    granular_slopes(mesh, d, q->v, slope);
+    granular_slopes(mesh, d, q->v, cell[0]);
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      flux[f] =
-          sim->flux->v[f] * granular_donor(mesh, f, dt, u_f[f], q->v, slope);
+      flux[f] = sim->flux->v[f] * carried(sim, f, dt, q->v, cell[0], cell[1]);
     }
   }
   mesh_fill_faces(mesh, 1, &flux);
@@ -240,38 +294,17 @@ static void carry_one(struct four_state *sim, double dt, struct field *q,
 
 static void carry(struct four_state *sim, double dt, const double *nu_new) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *slope = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  double *cell[2];
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, 2, cell);
   double *flux = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  find_keep(sim, dt, cell[1]);
   for (int e = 0; e < DIM; e++) {
-    carry_one(sim, dt, sim->u[e], nu_new, slope, flux);
+    carry_one(sim, dt, sim->u[e], nu_new, cell, flux);
   }
-  carry_one(sim, dt, sim->T, nu_new, slope, flux);
+  carry_one(sim, dt, sim->T, nu_new, cell, flux);
   scratch_give(&sim->scratch, __func__);
   memcpy(sim->nu->v, nu_new, (size_t)mesh->nleaves * sizeof *nu_new);
   mesh_touch(mesh, sim->nu->v);
-}
-
-/* Give leaves without grains the velocity of the grains around them. */
-static void calm_vacuum(struct four_state *sim) {
-  const struct mesh *mesh = sim->grid.mesh;
-  const double *nu = sim->nu->v;
-  field_fill(mesh, sim->nu);
-  for (int e = 0; e < DIM; e++) {
-    double *u = sim->u[e]->v;
-    field_fill(mesh, sim->u[e]);
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      double mass = 0, sum = 0;
-      if (four_state_has_grains(sim, i)) continue;
-      for (int s = 0; s < NSTENCIL; s++) {
-        const int32_t node = mesh->stencil[i][s];
-        if (nu[node] < sim->keys->nu_vacuum) continue;
-        mass += nu[node];
-        sum += nu[node] * u[node];
-      }
-      u[i] = mass > 0 ? sum / mass : 0;
-    }
-    mesh_touch(mesh, u);
-  }
 }
 
 static void lap(struct four_state *sim, enum four_state_stage stage) {
@@ -290,6 +323,7 @@ static double advance_state(struct four_state *sim, double dt) {
   carry(sim, dt, nu_new), lap(sim, FOUR_STATE_TRANSPORT);
   scratch_give(&sim->scratch, __func__);
   four_state_heat(sim, dt), lap(sim, FOUR_STATE_TEMPERATURE);
+  field_fill(sim->grid.mesh, sim->nu);
   calm_vacuum(sim), lap(sim, FOUR_STATE_OTHER);
   return given;
 }

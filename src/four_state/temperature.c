@@ -8,7 +8,7 @@
 #include "talus/minmax.h"
 #include "talus/poisson.h"
 
-/* Of the store of a leaf at most this part leaves through one face by delta. */
+/* Part of the store of a leaf that may leave through one face by delta. */
 static const double MOST_GIVEN = 0.25 / DIM;
 /* Tolerance of conduction, relative to the largest nu T; leaves below
  * LEAST_STORE of nu count as that. */

@@ -36,19 +36,24 @@ double four_state_time_step(const struct four_state *sim, double dt_max) {
   return dt < dt_max && dt_max < 2 * dt ? 0.5 * dt_max : dt;
 }
 
+double four_state_part_given(const struct four_state *sim, double dt, int32_t i,
+                             double nu_old) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double out = 0;
+  if (!(nu_old > 0)) return 1;
+  for (int s = 0; s < NFACE; s++) {
+    const double v = mesh_side(mesh, sim->flux->v, i, s);
+    out += max2(s & 1 ? v : -v, 0);
+  }
+  return dt * out / (mesh_width(mesh, i) * nu_old);
+}
+
 double four_state_given(const struct four_state *sim, double dt,
                         const double *nu_old) {
-  const struct mesh *mesh = sim->grid.mesh;
-  const double *flux = sim->flux->v;
   double most = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double out = 0;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     if (nu_old[i] < sim->keys->nu_vacuum) continue;
-    for (int s = 0; s < NFACE; s++) {
-      const double v = mesh_side(mesh, flux, i, s);
-      out += max2(s & 1 ? v : -v, 0);
-    }
-    most = max2(most, dt * out / (mesh_width(mesh, i) * nu_old[i]));
+    most = max2(most, four_state_part_given(sim, dt, i, nu_old[i]));
   }
-  return mesh_max(mesh, most);
+  return mesh_max(sim->grid.mesh, most);
 }

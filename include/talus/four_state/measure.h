@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a four-state run measures. */
+/* Measures of a four-state run. */
 #ifndef TALUS_FOUR_STATE_MEASURE_H
 #define TALUS_FOUR_STATE_MEASURE_H
 
@@ -11,7 +11,7 @@ struct four_state_measures {
   /* Where the contour nu = nu_surface ends along the first horizontal axis (3D:
    * its largest distance from the lower edge of the box), and its height, m */
   double front, height;
-  /* The same of the solid volume per area over nu_start, which ends where it
+  /* Likewise of the solid volume per area over nu_start, which ends where it
    * falls below half a grain */
   double grain_front, grain_height;
   double volume;             /* of grains, m^2 (3D: m^3) */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What grains are in leaves and at faces, from nu, T and u.
+/* Properties of grains in leaves and at faces, from nu, T and u.
  *
  * Masses. A leaf gives its mass to its two faces along an axis, the parts
  * 1 - s to the lower and s to the upper one,

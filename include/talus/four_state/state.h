@@ -40,10 +40,11 @@ struct four_state {
 
   /* Remade in every step */
   struct field *p, *p_E;    /* pressure, and by contact, Pa */
+  struct field *weight;     /* nu, but nowhere 0: p is interpolated by it */
   struct field *mu_K;       /* kinetic viscosity, Pa s */
   struct field *lambda_K;   /* kinetic bulk viscosity, Pa s */
   struct field *upper[DIM]; /* part of the mass of a leaf that counts for its
-                               upper face along an axis; masses.h */
+                               upper face along an axis; properties.h */
   struct field *mobility_f; /* 1/(rho_d M) */
   struct field *eta_f, *kappa_f; /* viscosities of faces, Pa s */
   struct field *shear_f;         /* shear rate at faces, 1/s */

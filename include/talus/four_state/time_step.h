@@ -5,10 +5,16 @@
 #ifndef TALUS_FOUR_STATE_TIME_STEP_H
 #define TALUS_FOUR_STATE_TIME_STEP_H
 
+#include <stdint.h>
+
 struct four_state;
 
 /* Return dt, at most dt_max. Collective. */
 double four_state_time_step(const struct four_state *sim, double dt_max);
+/* Return the part of its grains nu_old that leaf i has given away over dt by
+ * the flux of the last pressure. */
+double four_state_part_given(const struct four_state *sim, double dt, int32_t i,
+                             double nu_old);
 /* Return the largest part of its grains that a leaf has given away over dt by
  * the flux of the last pressure, nu_old [nleaves] being what it had.
  * Collective. */
