@@ -80,6 +80,9 @@ struct model_kind {
   /* Note after a step whether the grains are slow, and return whether they have
    * come to rest (output.stop_at_rest). NULL: they never do. */
   bool (*is_at_rest)(struct model *model);
+  /* Give the time when the grains came to rest; returns false while they move.
+   * NULL: the model does not know. */
+  bool (*arrest)(const struct model *model, double *time);
 
   /* Set value [ncolumns] of a row of series.csv, and unless NULL the outline
    * (free it with model_outline_free). The state stays as it is. */

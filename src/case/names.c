@@ -9,9 +9,9 @@
 static const char *const TAKEN[] = {
     /* simulation */
     "fraction", "pressure", "density", "viscosity", "velocity", "acceleration",
-    "frozen", "plane", "band", "drag", "shear_rate", "acceleration_", "face_",
-    "velocity_", "viscous_", "normal_", "old_", "cell_", "source", "carrier",
-    "stress_", "strain_", "yield_stress", "yield_state",
+    "frozen", "plane", "band", "drag", "shear_rate", "stress", "acceleration_",
+    "face_", "velocity_", "viscous_", "normal_", "old_", "cell_", "source",
+    "carrier", "stress_", "strain_", "yield_stress", "yield_state",
     /* snapshots and checkpoints */
     "cells", "vertices", "level", "levels", "fields", "parameters", "partition",
     "state", "time", "step",

@@ -344,16 +344,24 @@ static void say_timing(const struct run *run) {
                memory / fmax((double)run->most_cells, 1));
 }
 
+/* Write when the grains came to rest, if they did, into text. */
+static void write_arrest(const struct model *model, size_t size, char *text) {
+  double time;
+  if (model->kind->arrest != NULL && model->kind->arrest(model, &time))
+    snprintf(text, size, "; the grains came to rest at t = %.6g", time);
+}
+
 static void say_end(const struct run *run, const char *why) {
   const struct model *model = run->model;
   double wall = MPI_Wtime() - run->wall_begin;
   int64_t steps = model->step - run->first_step;
-  char line[512];
+  char line[512], arrest[64] = "";
+  write_arrest(model, sizeof arrest, arrest);
   snprintf(line, sizeof line,
            "%s%s at step %" PRId64 ", time %.6g: %" PRId64
-           " steps in %.2f s (%.1f steps/s)",
+           " steps in %.2f s (%.1f steps/s)%s",
            at_end(run) ? "" : "stopped by ", why, model->step, model->time,
-           steps, wall, (double)steps / fmax(wall, 1e-9));
+           steps, wall, (double)steps / fmax(wall, 1e-9), arrest);
   if (model->kind->say_end != NULL) model->kind->say_end(model);
   log_info("end: %s", line);
   progress_say(run->progress, "%s", line);

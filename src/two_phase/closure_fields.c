@@ -7,6 +7,7 @@
 #include "talus/memory.h"
 #include "talus/params.h"
 #include "talus/rheology.h"
+#include "talus/strain.h"
 #include "talus/two_phase/state.h"
 
 static inline bool is_grains(double c) { return c >= 0.5; }
@@ -73,11 +74,53 @@ static double *provide(struct field *field, int32_t n) {
   return field->v;
 }
 
+/* Add the mean of the kept stress over the sides of a leaf that have a yield
+ * stress to `stress` [nleaves]. */
+static void add_kept_stress(const struct two_phase *sim, double *stress) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct yield *yield = &sim->yield;
+  double *rows[STRAIN_ROWS], *face[2]; /* |s|, and 1 where it may be */
+  for (int k = 0; k < yield->nrows; k++) rows[k] = yield->s[k]->v;
+  for (int k = 0; k < 2; k++) face[k] = MEM_NEW(double, mesh->nfaces_all);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      face[0][f] = sqrt(strain_norm_squared(yield->nrows, rows, d, f));
+      face[1][f] = yield->tau_y->v[f] > 0;
+    }
+  }
+  mesh_fill_faces(mesh, 2, face);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double part = mesh_mean(mesh, face[1], i);
+    if (part > 0) stress[i] += mesh_mean(mesh, face[0], i) / part;
+  }
+  for (int k = 0; k < 2; k++) mem_free(face[k]);
+}
+
+/* Set the stress [nleaves] of the grains. */
+static void set_stress(const struct two_phase *sim, const double *shear_rate,
+                       double *stress) {
+  const struct rheology *grains = &sim->params->grains.rheology;
+  const int32_t n = sim->grid.mesh->nleaves;
+  double *tau_y = MEM_NEW(double, n), time = sim->model.time;
+  const double *p = sim->p->v;
+  if (sim->exact)
+    rheology_parts(grains, time, n, shear_rate, p, stress, tau_y);
+  else
+    rheology_eval(grains, time, n, shear_rate, p, stress);
+  for (int32_t i = 0; i < n; i++) stress[i] *= shear_rate[i];
+  if (sim->exact) add_kept_stress(sim, stress);
+  for (int32_t i = 0; i < n; i++) {
+    if (!is_grains(sim->c->v[i])) stress[i] = 0;
+  }
+  mem_free(tau_y);
+}
+
 void closure_fields_update(const struct two_phase *sim) {
   const struct rheology *grains = &sim->params->grains.rheology;
   const int32_t n = sim->grid.mesh->nleaves;
   double *shear_rate = provide(sim->shear_rate, n);
   set_shear_rate(sim, shear_rate);
+  set_stress(sim, shear_rate, provide(sim->stress, n));
   for (int k = 0; k < sim->nknown; k++) {
     double *known = provide(sim->known[k], n);
     rheology_output(grains, k, n, shear_rate, sim->p->v, known);
@@ -88,8 +131,10 @@ void closure_fields_update(const struct two_phase *sim) {
 }
 
 void closure_fields_release(const struct two_phase *sim) {
-  for (int k = -1; k < sim->nknown; k++) {
-    struct field *field = k < 0 ? sim->shear_rate : sim->known[k];
+  for (int k = -2; k < sim->nknown; k++) {
+    struct field *field = k < -1  ? sim->stress
+                          : k < 0 ? sim->shear_rate
+                                  : sim->known[k];
     mem_free(field->v);
     field->v = NULL;
   }

@@ -75,7 +75,14 @@ static bool is_too_short(const struct model *model, double least_dt,
 }
 
 static bool is_at_rest(struct model *model) {
+  rest_note(of(model));
   return rest_is_reached(of(model));
+}
+
+static bool arrest(const struct model *model, double *time) {
+  const struct two_phase *sim = of_const(model);
+  *time = sim->arrest.moved;
+  return sim->arrest.rests;
 }
 
 static void outputs(struct model *model, bool make) {
@@ -287,6 +294,8 @@ static void measure(struct model *model, double value[],
 static const struct scalar SCALARS[] = {
     NOT_NEGATIVE("travel", travel),
     NOT_NEGATIVE("slow_time", slow_time),
+    NOT_NEGATIVE("moved", arrest.moved),
+    {"rests", SCALAR_INT, AT(arrest.rests), 0, 1},
     NOT_NEGATIVE("kinetic", energy.kinetic),
     REAL("potential", energy.potential),
     REAL("dissipated", energy.dissipated),
@@ -324,6 +333,7 @@ const struct model_kind two_phase_model = {
     .least_dt = least_dt,
     .is_too_short = is_too_short,
     .is_at_rest = is_at_rest,
+    .arrest = arrest,
     .measure = measure,
     .outputs = outputs,
     .remember = remember,

@@ -3,9 +3,13 @@
 
 #include <math.h>
 
+#include "talus/log.h"
 #include "talus/minmax.h"
 #include "talus/params.h"
 #include "talus/two_phase/state.h"
+
+/* Grains slower than this part of sqrt(g l) are still. */
+static const double STILL = 1e-3;
 
 double rest_fastest(const struct two_phase *sim) {
   double fastest = 0;
@@ -27,4 +31,39 @@ bool rest_is_reached(struct two_phase *sim) {
   }
   sim->slow_time += sim->model.dt;
   return sim->slow_time >= params->rest_time;
+}
+
+/* Return the size l of the heap, the volume of its grains to the power 1/DIM.
+ */
+static double size_of(const struct two_phase *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double volume = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    volume += sim->c->v[i] * mesh_volume(mesh, i);
+  }
+  return pow(mesh_sum(mesh, volume), 1. / DIM);
+}
+
+static void set_rest(struct two_phase *sim, bool rests) {
+  if (rests && !sim->arrest.rests) {
+    log_info("step %lld: the grains have come to rest at t = %.6g",
+             (long long)sim->model.step, sim->arrest.moved);
+  }
+  if (!rests && sim->arrest.rests) {
+    log_info("step %lld: grains that were at rest move again at t = %.6g",
+             (long long)sim->model.step, sim->model.time);
+  }
+  sim->arrest.rests = rests;
+}
+
+void rest_note(struct two_phase *sim) {
+  double g2 = 0;
+  if (!sim->exact) return;
+  for (int d = 0; d < DIM; d++) {
+    g2 += sim->params->gravity[d] * sim->params->gravity[d];
+  }
+  const double g = sqrt(g2), size = size_of(sim), time = sim->model.time;
+  if (!(rest_fastest(sim) < STILL * sqrt(g * size))) sim->arrest.moved = time;
+  set_rest(sim,
+           g > 0 && size > 0 && time - sim->arrest.moved >= sqrt(size / g));
 }

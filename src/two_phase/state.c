@@ -198,6 +198,8 @@ static void add_known(struct two_phase *sim) {
   const struct rheology_model *model = sim->params->grains.rheology.model;
   sim->shear_rate =
       add_output(sim, "shear_rate", "1/s", "shear rate sqrt(2 D:D)");
+  sim->stress =
+      add_output(sim, "stress", "Pa", "stress of the grains, sqrt(T:T/2)");
   CHECK(model->noutputs <= TWO_PHASE_MAX_KNOWN, "%s has %d outputs",
         model->name, model->noutputs);
   for (; sim->nknown < model->noutputs; sim->nknown++) {
@@ -222,7 +224,9 @@ static void add_scratch(struct two_phase *sim) {
   static const char *const normal[] = {"normal_x", "normal_y", "normal_z"};
   static const char *const old[] = {"old_x", "old_y", "old_z"};
   sim->rho = add_cell(sim, "density", "kg/m^3", "density", NULL, false);
-  sim->eta = add_cell(sim, "viscosity", "Pa s", "viscosity, mean of the faces",
+  sim->eta = add_cell(sim, "viscosity", "Pa s",
+                      sim->exact ? "plastic viscosity, mean of the faces"
+                                 : "viscosity, mean of the faces",
                       &remap_average, true);
   sim->eta->old = sim->eta; /* a step that fails does not touch it */
   sim->plane = add_cell(sim, "plane", "1", "", NULL, false);

@@ -50,12 +50,17 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
   struct two_phase *sim = sim_start(&params);
   const int n = sim->nknown;
   double wrong_rate = 0, wrong[8] = {0}, gas = 0, cells = 0;
+  double eta, wrong_stress = 0;
+  rheology_eval(&params.grains.rheology, 0, 1, &RATE, &PRESSURE, &eta);
   set_shear(sim);
   closure_fields_update(sim);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     const bool grains = sim->c->v[i] > 0.5;
     for (int k = 0; k < n && !grains; k++) gas += fabs(sim->known[k]->v[i]);
+    if (!grains) gas += sim->stress->v[i];
     if (!grains || !is_inside(sim, i)) continue;
+    wrong_stress =
+        larger(wrong_stress, fabs(sim->stress->v[i] / (eta * RATE) - 1));
     cells++;
     wrong_rate = larger(wrong_rate, fabs(sim->shear_rate->v[i] / RATE - 1));
     for (int k = 0; k < n; k++) {
@@ -68,6 +73,7 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
   cells = mesh_sum(sim->grid.mesh, cells);
   gas = mesh_sum(sim->grid.mesh, gas);
   wrong_rate = mesh_max(sim->grid.mesh, wrong_rate);
+  wrong_stress = mesh_max(sim->grid.mesh, wrong_stress);
   for (int k = 0; k < n; k++) wrong[k] = mesh_max(sim->grid.mesh, wrong[k]);
   two_phase_destroy(sim);
   rheology_release(&params.grains.rheology);
@@ -76,7 +82,45 @@ START_TEST(grains_have_their_shear_rate_and_state_and_gas_none) {
   ck_assert_double_eq(gas, 0);
   /* sums of a few numbers of the size of the velocity over h */
   ck_assert_double_le(wrong_rate, 1e-11);
+  ck_assert_double_le(wrong_stress, 1e-10);
   for (int k = 0; k < n; k++) ck_assert_double_le(wrong[k], 1e-9);
+}
+END_TEST
+
+/* A Bingham fluid with eta_0 = 0.5 that shears at RATE below its yield stress,
+ * of 2, by a kept stress of size 0.7: on faces of the upper half of the box
+ * only, so that leaves beside the middle have it on fewer sides. */
+START_TEST(an_exact_yield_adds_its_kept_stress) {
+  struct params params = box_params(3);
+  rheology_init(&params.grains.rheology, rheology_find("bingham"));
+  rheology_set(&params.grains.rheology, "tau_y", 2);
+  rheology_set(&params.grains.rheology, "eta_0", 0.5);
+  rheology_set_regularisation(&params.grains.rheology, "exact");
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  double wrong = 0;
+  height = 1;
+  for (int32_t i = 0; i < mesh->nleaves; i++) sim->c->v[i] = 1;
+  set_shear(sim);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t leaf = mesh->face_owner[f];
+      const bool there = mesh->x[leaf][DIM - 1] > 0.5;
+      sim->yield.tau_y->v[f] = there ? 2 : 0;
+      sim->yield.s[d == 0]->v[f] = there ? 0.7 : 0;
+    }
+  }
+  closure_fields_update(sim);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double s = mesh->x[i][DIM - 1] > 0.5 ? 0.7 : 0;
+    const bool middle = fabs(mesh->x[i][DIM - 1] - 0.5) < mesh->h[i];
+    if (!is_inside(sim, i) || (middle && s == 0)) continue;
+    wrong = larger(wrong, fabs(sim->stress->v[i] - 0.5 * RATE - s));
+  }
+  wrong = mesh_max(mesh, wrong);
+  closure_fields_release(sim);
+  two_phase_destroy(sim);
+  ck_assert_double_le(wrong, 1e-12);
 }
 END_TEST
 
@@ -125,6 +169,7 @@ Suite *closure_fields_suite(void) {
   TCase *tcase = tcase_create("all");
   tcase_add_loop_test(
       tcase, grains_have_their_shear_rate_and_state_and_gas_none, 0, 2);
+  tcase_add_test(tcase, an_exact_yield_adds_its_kept_stress);
   tcase_add_test(tcase, stretching_at_a_rate_shears_at_twice_of_it);
   tcase_add_test(tcase, the_mean_shear_rate_is_that_of_the_grains);
   suite_add_tcase(suite, tcase);

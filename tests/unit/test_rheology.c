@@ -521,6 +521,7 @@ Suite *rheology_suite(void) {
   tcase_add_test(formula, rheology_window_is_where_mu_i_is_well_posed);
   suite_add_tcase(suite, formula);
   TCase *shared = tcase_create("shared");
+  tcase_set_timeout(shared, 60); /* tables of lee_huang, sanitizers */
   tcase_add_test(shared, rheology_parts_add_up_to_the_viscosity);
   tcase_add_test(shared, rheology_holds_where_there_is_a_yield_stress_at_rest);
   tcase_add_test(shared, rheology_is_cut_to_its_bounds);

@@ -1,5 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rest: the end of a run whose grains have stopped (output.stop_at_rest). */
+/* Rest: the end of a run whose grains have stopped (output.stop_at_rest), and
+ * the arrest of grains with an exact yield.
+ *
+ * Grains are still while the fastest are slower than 1e-3 sqrt(g l), l^DIM the
+ * volume of all grains; a tolerance of 1e-4 of the solvers leaves less. They
+ * have come to rest when they have been still for sqrt(l/g), in which what
+ * nothing holds falls by l/2, and the arrest is the last time they were not. A
+ * yield stress stops grains in finite time: their speed falls through a decade
+ * within a few steps there, and then slowly, as the scheme relaxes
+ * (docs/notes/arrest.md). That no stress be at its yield is too much to ask:
+ * some grains at the toe and the surface of a heap at rest are.
+ */
 #ifndef TALUS_TWO_PHASE_REST_H
 #define TALUS_TWO_PHASE_REST_H
 
@@ -14,5 +25,9 @@ double rest_fastest(const struct two_phase *sim);
  * been for as long as the case asks. False where it does not ask. Collective.
  */
 bool rest_is_reached(struct two_phase *sim);
+
+/* Note after a step whether grains with an exact yield are still, and say in
+ * run.log when they have come to rest, or move again. Collective. */
+void rest_note(struct two_phase *sim);
 
 #endif

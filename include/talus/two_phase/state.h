@@ -36,6 +36,12 @@ struct energy {
   double gas_dissipated; /* as `dissipated` */
 };
 
+/* The arrest of the grains (rest.h). */
+struct arrest {
+  double moved; /* the last time they did; 0: not since the start */
+  int rests;    /* they have come to rest since then */
+};
+
 /* Stages of a step (step.c). */
 enum step_stage {
   STAGE_FRACTION,   /* cleaning, VOF and the momentum that rides with it */
@@ -86,7 +92,7 @@ struct two_phase {
   double *c_before; /* c while it is synchronised (fractions.h), else NULL */
 
   /* For output, on demand (closure_fields.h) */
-  struct field *shear_rate;
+  struct field *shear_rate, *stress;
   struct field *known[TWO_PHASE_MAX_KNOWN]; /* outputs of the closure */
   int nknown;
 
@@ -95,6 +101,7 @@ struct two_phase {
 
   double travel;    /* cells the surface may have moved since adaptation */
   double slow_time; /* that the grains have been slow (rest.h), s */
+  struct arrest arrest;
   struct solve_stats carrying; /* of u_f with an exact yield */
   struct solve_stats pressure, predictor, viscous; /* of the last step, by
                               Picard repetitions all their iterations and the
