@@ -278,11 +278,10 @@ static void share_stress(double time, const struct rheology *const phase[2],
   m->n = 0;
 }
 
-/* Mix eta_f of the grains (in) with that of the gas. */
-static void mix_viscosity(const struct mesh *mesh, double time,
-                          const struct rheology *const phase[2],
-                          const double *theta_f, const double *shear_f,
-                          const double *p_f, double *eta_f) {
+void properties_mix(const struct mesh *mesh, double time,
+                    const struct rheology *const phase[2],
+                    const double *theta_f, const double *shear_f,
+                    const double *p_f, double *eta_f) {
   double eta_gas[BLOCK];
   struct mixed m;
   m.n = 0; /* the rest, which is large, need not be cleared */
@@ -318,7 +317,7 @@ void properties_viscosity(const struct mesh *mesh, double time,
   rheology_eval(&grains->rheology, time, mesh->nfaces, shear_f, p_f, eta_f);
   if (gas) {
     const struct rheology *const phase[2] = {&grains->rheology, &gas->rheology};
-    mix_viscosity(mesh, time, phase, theta_f, shear_f, p_f, eta_f);
+    properties_mix(mesh, time, phase, theta_f, shear_f, p_f, eta_f);
   }
   mesh_fill_faces(mesh, 1, &eta_f);
 }

@@ -244,6 +244,7 @@ static void add_scratch(struct two_phase *sim) {
   if (sim->params->side_walls.mu > 0) add_walls(sim);
   if (sim->params->permeable) add_percolation(sim);
   sim->eta_f = add_face(sim, "face_viscosity");
+  if (sim->exact) sim->yield.shear = add_face(sim, "face_shear");
   sim->alpha_f = add_face(sim, "face_specific_volume");
   sim->gravity_f = add_face(sim, "face_gravity");
   sim->u_half = add_face(sim, "face_half");

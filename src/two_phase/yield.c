@@ -25,6 +25,8 @@
  * is not extrapolated is kept this much smaller, for its direction. */
 #define AGREE 0.99
 #define FORGOTTEN 1e-3
+/* Volume of gas in a leaf that keeps grains from touching what is beyond. */
+#define FILM 0.1
 
 /* Give the part of a face of axis d that the plane of the leaf on `side` wets.
  */
@@ -34,7 +36,7 @@ static double wet_side(const struct two_phase *sim, int d, int32_t f,
   const int32_t leaf = mesh->face_leaf[f][side];
   const int32_t node = mesh->face_node[f][side];
   const double c = sim->c->v[leaf];
-  if (!vof_is_cut(c)) return c > 0.5;
+  if (!vof_is_cut(c) || c < PARAMS_GAS) return c > 0.5;
   double n[DIM], lo[DIM], hi[DIM], alpha = sim->plane->v[leaf], size = 0;
   const bool coarse = node >= mesh->begin_virtual;
   for (int e = 0; e < DIM; e++) {
@@ -50,7 +52,9 @@ static double wet_side(const struct two_phase *sim, int d, int32_t f,
   return vof_part(mesh, leaf, n, alpha, lo, hi);
 }
 
-/* Set the wet part a [nfaces] of each face. */
+/* Set the wet part a [nfaces] of each face. Grains lie on what is beyond a film
+ * of gas whose volume in their leaf is below FILM, as gas leaves through them.
+ */
 static void find_wet(const struct two_phase *sim, double *wet) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int d = 0; d < DIM; d++) {
@@ -58,7 +62,9 @@ static void find_wet(const struct two_phase *sim, double *wet) {
       const int32_t *leaf = mesh->face_leaf[f];
       double part = 1;
       for (int side = 0; side < 2; side++) {
-        if (leaf[side] >= 0) part = min2(part, wet_side(sim, d, f, side));
+        if (leaf[side] < 0) continue;
+        const double touches = 1 - (1 - sim->c->v[leaf[side]]) / FILM;
+        part = min2(part, max2(touches, wet_side(sim, d, f, side)));
       }
       wet[f] = part;
     }
@@ -131,19 +137,40 @@ static double largest_yield_stress(const struct two_phase *sim) {
   return mesh_max(sim->grid.mesh, most);
 }
 
+/* Let eta_f and tau_y of the grains be those of grains and gas. On a dry face
+ * gas is in series with the grains on its line, a part theta; work: theta. */
+static void add_gas(struct two_phase *sim, const double *shear,
+                    const double *wet, const double *p_f, double *theta) {
+  const struct params *params = sim->params;
+  const struct rheology *const phase[2] = {&params->grains.rheology,
+                                           &params->gas.rheology};
+  double *eta = sim->eta_f->v, *tau_y = sim->yield.tau_y->v;
+  double *dry = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  for (int32_t f = 0; f < sim->grid.mesh->nfaces; f++) {
+    if (wet[f] > 0) theta[f] = 0;
+    dry[f] = eta[f];
+  }
+  properties_mix(sim->grid.mesh, sim->model.time, phase, theta, shear, p_f,
+                 dry);
+  for (int32_t f = 0; f < sim->grid.mesh->nfaces; f++) {
+    eta[f] = wet[f] * eta[f] + (1 - wet[f]) * dry[f];
+    tau_y[f] *= wet[f];
+  }
+  scratch_give(&sim->scratch, __func__);
+}
+
 void yield_update(struct two_phase *sim, double *const u[DIM]) {
-  enum { BLOCK = 512 };
   const struct mesh *mesh = sim->grid.mesh;
   const struct params *params = sim->params;
-  double density[2], *normal[DIM], *work[3], gas[BLOCK];
+  double density[2], *normal[DIM], *work[3], *shear = sim->yield.shear->v;
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 3, work);
-  double *shear = work[0], *wet = work[1], *p_f = work[2];
+  double *wet = work[0], *p_f = work[1], *theta = work[2];
   double *eta = sim->eta_f->v, *tau_y = sim->yield.tau_y->v;
   two_phase_densities(sim, density);
   field_arrays(sim->normal, normal);
   strain_shear_rate(mesh, sim->skin, u, shear);
   properties_pressure(mesh, density, params->gravity, sim->c->v, normal,
-                      sim->plane->v, sim->p->v, sim->grid.closed, wet, p_f);
+                      sim->plane->v, sim->p->v, sim->grid.closed, theta, p_f);
   find_wet(sim, wet);
   bear_weight(sim, wet, p_f);
   const double flow = find_flow(sim);
@@ -152,17 +179,7 @@ void yield_update(struct two_phase *sim, double *const u[DIM]) {
   for (int32_t f = 0; f < mesh->nfaces; f++) shear[f] = max2(shear[f], least);
   rheology_parts(&params->grains.rheology, sim->model.time, mesh->nfaces, shear,
                  p_f, eta, tau_y);
-  for (int32_t begin = 0; begin < mesh->nfaces; begin += BLOCK) {
-    const int32_t n =
-        begin + BLOCK < mesh->nfaces ? BLOCK : mesh->nfaces - begin;
-    if (params->single_phase) break;
-    rheology_eval(&params->gas.rheology, sim->model.time, n, shear + begin,
-                  p_f + begin, gas);
-    for (int32_t f = begin; f < begin + n; f++) {
-      eta[f] = wet[f] * eta[f] + (1 - wet[f]) * gas[f - begin];
-      tau_y[f] *= wet[f];
-    }
-  }
+  if (!params->single_phase) add_gas(sim, shear, wet, p_f, theta);
   scratch_give(&sim->scratch, __func__);
   mesh_fill_faces(mesh, 1, &eta);
   const double height = height_of(params, largest_yield_stress(sim));
@@ -194,6 +211,17 @@ static double project(int n, double q[STRAIN_ROWS], int d, double tau_y) {
   const double m = size > tau_y ? tau_y / size : 1;
   for (int k = 0; k < n; k++) q[k] *= m;
   return m;
+}
+
+/* Give the shear rate of u^n at face f of axis d if D* has left out a jolt,
+ * else 0. */
+static double find_jolt(const struct yield *yield, double guess[STRAIN_ROWS],
+                        int d, int32_t f) {
+  double *rows[STRAIN_ROWS];
+  for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &guess[k];
+  const double known = 2 * sqrt(strain_norm_squared(yield->nrows, rows, d, 0));
+  const double shear = yield->shear->v[f];
+  return shear > 2 * known + yield->gamma_r / STIFF ? shear : 0;
 }
 
 /* Set rate [ncells] of leaves and ghosts to the mean |D| of their sides; face:
@@ -243,10 +271,13 @@ void yield_linearise(struct two_phase *sim, double dt, double *r, double *eta,
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       double q[STRAIN_ROWS];
       extrapolate(yield, f, dt, q);
+      const double jolt = find_jolt(yield, q, d, f);
       for (int k = 0; k < yield->nrows; k++) {
         q[k] = yield->s[k]->v[f] + 2 * r[f] * q[k];
       }
-      const double m = project(yield->nrows, q, d, yield->tau_y->v[f]);
+      const double tau_y = yield->tau_y->v[f];
+      double m = project(yield->nrows, q, d, tau_y);
+      if (jolt > 0 && r[f] > 0) m = min2(m, tau_y / (r[f] * jolt));
       eta[f] = sim->eta_f->v[f] + m * r[f];
       for (int e = 0; e < n; e++) stress[e][f] = m * yield->s[e]->v[f];
     }

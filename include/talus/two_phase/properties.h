@@ -42,6 +42,7 @@
 #include "talus/skin.h"
 
 struct phase;
+struct rheology;
 
 /* Set rho [nleaves], and alpha_f [nfaces_all] to 1/rho on faces, 0 on closed
  * patches. density[0]: grains, [1]: gas. c filled. Collective. */
@@ -66,6 +67,13 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
                         const struct gravity *gravity, const double *c,
                         double *const normal[DIM], const double *plane,
                         const double *alpha_f, double *gravity_f);
+
+/* Mix eta_f [nfaces] of the grains with that of the gas, in series on lines of
+ * which the part theta_f lies in the grains; phase: grains, gas. */
+void properties_mix(const struct mesh *mesh, double time,
+                    const struct rheology *const phase[2],
+                    const double *theta_f, const double *shear_f,
+                    const double *p_f, double *eta_f);
 
 /* Set eta_f [nfaces_all], Pa s, at a time, s. gas NULL: grains only. c, p
  * filled; normal, plane: the planes of cut leaves; shear_f: strain.h; work: two

@@ -10,9 +10,14 @@
  *   q  = s^n + 2 r D*,  m = min(1, tau_y/|q|)
  *   rho u - dt div(2 (eta + m r) D(u)) = rho (u + dt g) + dt div(m s^n)
  *   s^{n+1} = P(s^n + 2 r D(u))
- * the method of multipliers [bermudez_moreno_1981] with one step of Picard's
- * in it. Grains at rest have D = 0 whatever r is: r is no viscosity, only the
- * stiffness r/dt of a spring that holds them while s builds up. It is
+ * D is that of u before the projection, as the solve leaves it. Where it has
+ * left out a jolt, that of u^n being larger by more than the rate of the flow
+ * and the double, m is that of u^n instead: grains that land yield under the
+ * pressure of that step, and would be held by it else.
+ *
+ * It is the method of multipliers [bermudez_moreno_1981] with one step of
+ * Picard's in it. Grains at rest have D = 0 whatever r is: r is no viscosity,
+ * only the stiffness r/dt of a spring that holds them while s builds up. It is
  *   r = tau_y/(gamma_r + G),  gamma_r = 5e-4 max(sqrt(g/H), U/L),
  * H = max tau_y/(rho_1 g), U the largest speed, L the length of the domain, and
  * G the mean |D^n| around the face. Grains that flow past a face in which D
@@ -22,6 +27,9 @@
  * Grains and gas act side by side on a face, of which the part a is wet (by the
  * planes of its leaves):
  *   eta = a eta_1 + (1 - a) eta_2,  tau_y = a (tau_y1(p_f) + cohesion).
+ * On a dry face, a = 0, eta_2 is that of the gas in series with the grains on
+ * its line (properties.h). Grains touch what a film of gas keeps them from: in
+ * a leaf with a part c' < 0.1 of gas a is at least 1 - 10 c' (of both leaves).
  * The face that carries a cut leaf bears at least the weight of its grains,
  *   p_f >= c rho_1 |g_d| h/a.
  *
@@ -45,6 +53,7 @@ struct yield {
   struct field *strain[STRAIN_ROWS], *trend[STRAIN_ROWS]; /* D, 1/s, and its
                                   change, 1/s^2; kept */
   struct field *tau_y;                                    /* Pa; kept */
+  struct field *shear; /* sqrt(2 D:D) of u^n on faces, 1/s */
   struct field *state; /* yield_state of snapshots, on demand */
   double gamma_r;      /* 1/s */
 };
