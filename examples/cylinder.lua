@@ -22,7 +22,8 @@
 -- energies are those of the whole turn, with dimension=3 those of the quarter.
 --
 -- Numbers. mu(I) with 0.38, 0.28 and I0 = 0.279 [Jop et al. 2006]; d = 0.54 mm;
--- r_i = 0.2 m or 0.02 m. The floor is rough.
+-- r_i = 0.2 m or 0.02 m. The floor is rough; with strip > 0 gas slips on it for so
+-- many grain diameters ahead of the grains.
 --
 -- Source. R. Valette, S. Riber, L. Sardo, R. Castellani, F. Costes, N. Vriend &
 -- E. Hachem, Sensitivity to the rheology and geometry of granular collapses by
@@ -45,6 +46,8 @@ local d_mm = param("d_mm", 0.54, "grain diameter, in mm")
 local mu_s = param("mu_s", 0.38, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.279, "inertial number at half that rise")
+local strip = param("strip", 0,
+                    "grain diameters of smooth floor ahead of the grains")
 local regularisation = param("regularisation", "exact",
                              "of the yield stress; clip: with eta_max")
 local stop = param("stop", 8, "time of the end, in sqrt(h_i/g)")
@@ -86,7 +89,7 @@ return {
     right = "slip",
     front = not flat and "symmetry" or nil,
     back = not flat and "slip" or nil,
-    bottom = "no_slip",
+    bottom = strip > 0 and { "slip_strip", length = strip * d } or "no_slip",
     top = { "outflow", pressure = -rho_gas * size },
   },
   adapt = { { "interface", width = 3 }, { "inside" } },

@@ -43,8 +43,8 @@ struct average {
 
 struct boundary_node {
   int32_t source; /* node name */
-  int8_t patch[DIM];
-  double h;
+  int8_t patch[DIM], outside[DIM];
+  double x[DIM], h;
 };
 
 struct builder {

@@ -36,6 +36,35 @@ struct mesh *mesh_new(struct forest *forest) {
   return mesh;
 }
 
+void mesh_renew_patches(struct mesh *mesh,
+                        int (*patch)(const void *context, int side,
+                                     const double x[DIM], double h, int now),
+                        const void *context) {
+  const int32_t n = mesh->ncells - mesh->begin_boundary;
+  for (int32_t k = 0; k < n; k++) {
+    const double h = mesh->boundary_h[k];
+    for (int d = 0; d < DIM; d++) {
+      double x[DIM];
+      const int outside = mesh->boundary_outside[k][d];
+      if (outside == 0) continue;
+      for (int e = 0; e < DIM; e++) x[e] = mesh->boundary_x[k][e];
+      x[d] += 0.5 * h * outside;
+      const int now = mesh->boundary_patch[k][d];
+      mesh->boundary_patch[k][d] =
+          (int8_t)patch(context, 2 * d + (outside > 0), x, h, now);
+    }
+  }
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      const int32_t beyond = node[mesh->face_leaf[f][1] < 0];
+      if (mesh->face_patch[f] < 0) continue;
+      mesh->face_patch[f] =
+          mesh->boundary_patch[beyond - mesh->begin_boundary][d];
+    }
+  }
+}
+
 void mesh_destroy(struct mesh *mesh) {
   if (!mesh) return;
   plan_end(&mesh->exchange->ghost);
@@ -61,6 +90,8 @@ void mesh_destroy(struct mesh *mesh) {
                    mesh->virtual_weight,
                    mesh->boundary_source,
                    mesh->boundary_patch,
+                   mesh->boundary_x,
+                   mesh->boundary_outside,
                    mesh->boundary_h,
                    mesh->slant,
                    mesh->face_radius,

@@ -110,6 +110,8 @@ static int32_t boundary_get(struct builder *b, int32_t source,
   b->boundary[k].h = h;
   for (int d = 0; d < DIM; d++) {
     b->boundary[k].patch[d] = -1;
+    b->boundary[k].outside[d] = (int8_t)outside[d];
+    b->boundary[k].x[d] = b->layout->origin[d] + unit * (double)x[d] + 0.5 * h;
     if (outside[d] == 0) continue;
     double face[3] = {0};
     for (int e = 0; e < DIM; e++) {
@@ -295,11 +297,16 @@ static void set_helpers(struct builder *b, const int32_t *average,
   mesh->boundary_h = MEM_NEW(double, b->nboundary);
   mesh->boundary_patch =
       mem_alloc((size_t)b->nboundary, sizeof *mesh->boundary_patch);
+  mesh->boundary_outside =
+      mem_alloc((size_t)b->nboundary, sizeof *mesh->boundary_outside);
+  mesh->boundary_x = mem_alloc((size_t)b->nboundary, sizeof *mesh->boundary_x);
   for (int32_t k = 0; k < b->nboundary; k++) {
     mesh->boundary_source[k] =
         final_index(mesh, average, group, b->boundary[k].source);
     mesh->boundary_h[k] = b->boundary[k].h;
     memcpy(mesh->boundary_patch[k], b->boundary[k].patch, DIM);
+    memcpy(mesh->boundary_outside[k], b->boundary[k].outside, DIM);
+    memcpy(mesh->boundary_x[k], b->boundary[k].x, sizeof *mesh->boundary_x);
   }
 }
 

@@ -19,6 +19,7 @@ struct forest;
 struct forest_layout;
 struct hierarchy;
 struct level_raster;
+struct slip_strip;
 
 struct grid {
   const struct params *params; /* borrowed */
@@ -26,6 +27,7 @@ struct grid {
   struct mesh *mesh;
   struct hierarchy *hierarchy;
   struct clean *clean;
+  struct slip_strip *strip[6]; /* of the sides that are strips, NULL before */
   struct fields fields;
   struct level_raster *level_raster[PARAMS_MAX_CRITERIA]; /* of those that are
                               functions of position; NULL until asked for */

@@ -64,6 +64,8 @@ struct hierarchy;
 /* Make the levels above the leaves of `mesh`, which must outlive the hierarchy.
  * Build it anew when the mesh changes. The caller owns it. Collective. */
 struct hierarchy *hierarchy_new(const struct mesh *mesh);
+/* Follow mesh_renew_patches. Collective. */
+void hierarchy_renew_patches(struct hierarchy *hierarchy);
 void hierarchy_destroy(struct hierarchy *hierarchy);
 
 #endif

@@ -69,6 +69,7 @@ struct model_keys {
   /* Paths of shared keys that mean nothing to the model and are refused; NULL
    * at the end. NULL: it takes all. */
   const char *const *refused;
+  bool strips; /* it calls slip_strip_renew, so that sides may be strips */
 };
 
 /* Return the keys of model k of src/models.c; NULL past the last. */

@@ -120,6 +120,8 @@ struct mesh {
   double (*virtual_weight)[DIM];    /* 1/4 over their distance in h */
   int32_t *boundary_source;         /* node mirrored */
   int8_t (*boundary_patch)[DIM];    /* patch crossed along each axis, or -1 */
+  double (*boundary_x)[DIM];        /* centre of the node mirrored, m */
+  int8_t (*boundary_outside)[DIM];  /* where it lies beyond: -1, 0 or 1 */
   double *boundary_h;               /* edge of the node */
   int32_t nshared;
   struct shared_node *shared; /* [nshared] */
@@ -340,6 +342,14 @@ void mesh_fill(const struct mesh *mesh, int n, double *const v[],
 void mesh_fill_potential(const struct mesh *mesh, const double *rho, int n,
                          double *const v[], const struct bc *const bc[],
                          bool homogeneous);
+/* Give boundary nodes and faces other patches: `patch` returns that of a face
+ * with centre x and edge h on a side of the box that belongs to `now`, the same
+ * on all ranks. No face may be shared (forest.h). The hierarchy must follow
+ * (hierarchy_renew_patches). */
+void mesh_renew_patches(struct mesh *mesh,
+                        int (*patch)(const void *context, int side,
+                                     const double x[DIM], double h, int now),
+                        const void *context);
 /* Spread a mark, 0 or more on leaves, by one leaf in every direction: set it to
  * 1 in leaves with a mark anywhere in the stencil, else to 0. Virtual
  * children have the mark of their leaf, boundary nodes none. mark [ncells],

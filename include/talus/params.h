@@ -38,6 +38,7 @@ enum boundary_type {
   BOUNDARY_NO_SLIP, /* u = velocity (a moving wall moves tangentially) */
   BOUNDARY_SLIP,    /* u.n = 0, no tangential stress; also "symmetry" */
   BOUNDARY_NAVIER,  /* u.n = 0, u_t = slip_length du_t/dn */
+  BOUNDARY_STRIP,   /* no slip, but slip ahead of the grains (slip_strip.h) */
   BOUNDARY_OUTFLOW, /* p = pressure, du/dn = 0 */
   BOUNDARY_INFLOW,  /* u = velocity, c = fraction */
   BOUNDARY_PERIODIC
@@ -49,6 +50,7 @@ struct boundary {
   double velocity[3];
   double pressure;
   double slip_length;
+  double strip;    /* m of the floor that are smooth, ahead of the grains */
   double fraction; /* volume fraction of grains carried in by an inflow */
 };
 
@@ -133,6 +135,7 @@ struct params {
   struct boundary boundary[PARAMS_MAX_BOUNDARIES]; /* side 2d: lower side of
                                axis d, 2d+1: upper; then patches from 6 on */
   int nboundaries;                                 /* at least 6 */
+  int smooth; /* of these the one that is the slip of strips; 0: no strips */
   /* Which boundary holds at a boundary face: returns an index into boundary
    * (>= 6 for a patch, or `side`); NULL: every face takes its side's. */
   int (*boundary_select)(void *context, int side, const double x[3]);

@@ -149,6 +149,11 @@ void boundary_read_patches(struct case_file *file) {
     read_boundary(file, path, "", boundary);
     if (boundary->type == BOUNDARY_PERIODIC)
       read_fail_at(file, path, "%s: a patch cannot be periodic", path);
+    if (boundary->type == BOUNDARY_STRIP)
+      read_fail_at(file, path,
+                   "%s: a patch cannot be a slip_strip, which is divided by "
+                   "the grains: let a whole side be one",
+                   path);
   }
   lua_pop(L, 1);
 }
@@ -200,9 +205,39 @@ static void check_pressure_twice(struct case_file *file) {
                file->params.pressure_level, path);
 }
 
+/* Make room for the slip of strips, which need grains and gas that the model
+ * follows. */
+static void check_strips(struct case_file *file) {
+  struct params *params = &file->params;
+  for (int side = 0; side < 2 * params->dimension; side++) {
+    char path[PATH_LENGTH];
+    path_join(path, "boundary", keys_side_name(params->dimension, side));
+    if (params->boundary[side].type != BOUNDARY_STRIP) continue;
+    if (!models_keys(params->model)->strips)
+      read_fail_at(file, path,
+                   "%s = \"slip_strip\" is not known to model = \"%s\": take "
+                   "\"no_slip\", or \"navier_slip\"",
+                   path, models_names[params->model]);
+    if (params->single_phase)
+      read_fail_at(file, path,
+                   "%s = \"slip_strip\" has gas beside the grains, and they "
+                   "fill the box: take \"no_slip\", or give gas",
+                   path);
+    if (params->smooth > 0) continue;
+    if (file->npatches >= most_patches(file))
+      read_fail_at(file, path,
+                   "%s = \"slip_strip\" needs a patch of its own, and there "
+                   "are %d already: take one away",
+                   path, file->npatches);
+    params->smooth = params->nboundaries;
+    new_patch(file, "slip of strips")->type = BOUNDARY_SLIP;
+  }
+}
+
 void boundary_check(struct case_file *file) {
   struct params *params = &file->params;
   bool chosen = false;
+  check_strips(file);
   for (int side = 0; side < 6; side++)
     chosen = chosen || file->side_function[side] != NULL;
   if (chosen) {

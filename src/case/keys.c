@@ -148,6 +148,9 @@ static const struct boundary_kind BOUNDARY_KINDS[] = {
     {"symmetry", BOUNDARY_SLIP, {NULL}, NULL, "mirror, the same as slip"},
     {"navier_slip", BOUNDARY_NAVIER, {"slip_length"}, "slip_length",
      "wall, u = slip_length du/dn"},
+    {"slip_strip", BOUNDARY_STRIP, {"length"}, "length",
+     "wall at rest, but for `length` ahead of the grains without friction for "
+     "the gas"},
     {"outflow", BOUNDARY_OUTFLOW, {"pressure"}, NULL,
      "open, with this pressure; what flows in is gas"},
     {"inflow", BOUNDARY_INFLOW, {"velocity", "fraction"}, "velocity",
@@ -165,6 +168,9 @@ static const struct key BOUNDARY_OPTIONS[] = {
      .offset = AT(pressure), .help = "pressure at the boundary"},
     {"slip_length", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_NEEDED, .unit = "m",
      .offset = AT(slip_length), .help = "depth at which u would vanish"},
+    {"length", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_NEEDED, .unit = "m",
+     .offset = AT(strip), .help = "of the smooth strip ahead of the grains, a "
+     "few of their diameters"},
     {"fraction", KEY_NUMBER, .low = 0, .high = 1, KEY_DEFAULT "0", .unit = "",
      .offset = AT(fraction), .help = "volume fraction of grains carried in"},
 };

@@ -9,6 +9,7 @@
 #include "talus/hierarchy.h"
 #include "talus/level_raster.h"
 #include "talus/openings.h"
+#include "talus/slip_strip.h"
 
 void grid_layout(const struct params *params, struct forest_layout *layout) {
   memset(layout, 0, sizeof *layout);
@@ -47,6 +48,9 @@ void grid_release(struct grid *grid) {
   fields_destroy(&grid->fields);
   for (int k = 0; k < PARAMS_MAX_CRITERIA; k++) {
     level_raster_destroy(grid->level_raster[k]);
+  }
+  for (int side = 0; side < NFACE; side++) {
+    slip_strip_destroy(grid->strip[side]);
   }
   clean_destroy(grid->clean);
   hierarchy_destroy(grid->hierarchy);

@@ -157,9 +157,9 @@ static void divide_sides(struct hierarchy *h) {
 }
 
 /* Find the patches of walls, from the leaves up; of several patches on the side
- * of a merged node one is taken. They travel in h->w, which is not needed yet.
- */
-static void find_patches(struct hierarchy *h) {
+ * of a merged node one is taken. They travel in h->w, which is not needed
+ * before the next coefficients, plus one. */
+static void carry_patches(struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     for (int f = 0; f < NFACE; f++) {
@@ -185,16 +185,39 @@ static void find_patches(struct hierarchy *h) {
   for (int l = 0; l < h->nlevels; l++) {
     plan_run_float(&h->level[l].copy, NFACE, h->w, false);
   }
-  int32_t n = 0;
-  for (int32_t i = 0; i < h->nactive; i++) h->nsides += h->wall[i] != 0;
-  h->sides = MEM_NEW(struct side, h->nsides);
-  for (int32_t i = 0; i < h->nactive; i++) {
-    if (!h->wall[i]) continue;
-    struct side *side = &h->sides[n++];
-    side->slot = i;
+}
+
+/* Set the patches of all sides to what has been carried. */
+static void set_patches(struct hierarchy *h) {
+  for (int32_t k = 0; k < h->nsides; k++) {
+    struct side *side = &h->sides[k];
+    const int32_t i = side->slot;
     for (int f = 0; f < NFACE; f++) {
       side->patch[f] = (int8_t)(h->wall[i] >> f & 1 ? h->w[f][i] - 1 : -1);
     }
+  }
+}
+
+static void find_patches(struct hierarchy *h) {
+  int32_t n = 0;
+  carry_patches(h);
+  for (int32_t i = 0; i < h->nactive; i++) h->nsides += h->wall[i] != 0;
+  h->sides = MEM_NEW(struct side, h->nsides);
+  for (int32_t i = 0; i < h->nactive; i++) {
+    if (h->wall[i]) h->sides[n++].slot = i;
+  }
+  set_patches(h);
+}
+
+void hierarchy_renew_patches(struct hierarchy *h) {
+  for (int f = 0; f < NFACE && h->nranks > 1; f++) { /* others add to these */
+    memset(h->w[f], 0, (size_t)h->nslots * sizeof *h->w[f]);
+  }
+  carry_patches(h);
+  set_patches(h);
+  for (int32_t k = 0; k < h->nmirrors; k++) {
+    struct mirror *mirror = &h->mirror[k];
+    mirror->patch = h->sides[mirror->side].patch[mirror->face];
   }
 }
 

@@ -52,7 +52,9 @@ struct jump {
  * h->e. */
 struct mirror {
   int32_t source; /* slot */
-  int8_t patch;
+  int32_t side;   /* number of the side beyond which it lies, */
+  int8_t face;    /* through this face */
+  int8_t patch;   /* of that side */
 };
 
 /* A node at a wall. */

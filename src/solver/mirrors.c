@@ -7,8 +7,9 @@
 #include "talus/count.h"
 #include "talus/memory.h"
 
-/* Add an image and return its slot. */
-static int32_t add_mirror(struct linking *k, int32_t source, int patch) {
+/* Add an image beyond a face of a side and return its slot. */
+static int32_t add_mirror(struct linking *k, int32_t source,
+                          const struct side *side, int face) {
   struct hierarchy *h = k->h;
   if (h->nmirrors == k->mirror_capacity) {
     count_index((int64_t)h->nslots + h->njumps + 2 * (int64_t)h->nmirrors + 64,
@@ -17,14 +18,15 @@ static int32_t add_mirror(struct linking *k, int32_t source, int patch) {
     h->mirror =
         mem_resize(h->mirror, (size_t)k->mirror_capacity, sizeof *h->mirror);
   }
-  h->mirror[h->nmirrors] = (struct mirror){source, (int8_t)patch};
+  h->mirror[h->nmirrors] = (struct mirror){source, (int32_t)(side - h->sides),
+                                           (int8_t)face, side->patch[face]};
   return h->nslots + h->njumps + h->nmirrors++;
 }
 
 static void link_faces(struct linking *k, const struct side *side) {
   for (int f = 0; f < NFACE; f++) {
     if (side->patch[f] < 0) continue;
-    k->h->neighbour[f][side->slot] = add_mirror(k, side->slot, side->patch[f]);
+    k->h->neighbour[f][side->slot] = add_mirror(k, side->slot, side, f);
   }
 }
 
@@ -42,7 +44,7 @@ static void link_corners(struct linking *k, const struct side *side, int a,
         *corner < h->nactive ? h->neighbour[face][*corner] : SLOT_UNKNOWN;
     *corner = image >= h->nslots + h->njumps
                   ? image
-                  : add_mirror(k, *corner, side->patch[face]);
+                  : add_mirror(k, *corner, side, face);
   }
 }
 

@@ -61,5 +61,6 @@ static const struct key KEYS[] = {
 const struct model_keys two_phase_keys = {
     .name = "two_phase",
     .title = "incompressible grains and a light gas, with an interface",
+    .strips = true,
     .keys = KEYS,
     .nkeys = sizeof KEYS / sizeof *KEYS};

@@ -10,6 +10,7 @@
 #include "talus/openings.h"
 #include "talus/remap.h"
 #include "talus/skin.h"
+#include "talus/slip_strip.h"
 #include "talus/vof.h"
 
 /* Set the conditions of one boundary, on a patch across `axis`. */
@@ -32,7 +33,7 @@ static void set_patch(struct two_phase *sim, int patch, int axis,
       }
     } else {
       bc->type = BC_DIRICHLET; /* a wall moves along itself only */
-      if (boundary->type == BOUNDARY_NO_SLIP && e == axis) bc->value = 0;
+      if (boundary->type != BOUNDARY_INFLOW && e == axis) bc->value = 0;
     }
   }
   if (open) {
@@ -292,6 +293,7 @@ bool two_phase_adapt(struct two_phase *sim) {
   const struct followed followed = two_phase_followed(sim);
   const bool changed = adapt_grid(&sim->grid, &followed);
   if (changed) sim->planes_hold = false;
+  if (changed) slip_strip_renew(&sim->grid, sim->c->v);
   sim->travel = 0;
   return changed;
 }

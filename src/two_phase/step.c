@@ -69,6 +69,7 @@
 #include "talus/projection.h"
 #include "talus/side_walls.h"
 #include "talus/skin.h"
+#include "talus/slip_strip.h"
 #include "talus/strain.h"
 #include "talus/two_phase/fractions.h"
 #include "talus/two_phase/percolation.h"
@@ -153,6 +154,7 @@ static void update_density(struct two_phase *sim) {
   const struct gravity gravity = describe_gravity(sim, work);
   two_phase_densities(sim, density);
   field_arrays(sim->normal, normal);
+  slip_strip_renew(&sim->grid, sim->c->v);
   field_fill(mesh, sim->c);
   fractions_update_planes(sim);
   if (!sim->params->single_phase) {
@@ -690,6 +692,7 @@ static void advance_state(struct two_phase *sim, double dt, double rate) {
 /* Set the state back to that before the step; `before` has the scalars. */
 static void set_back(struct two_phase *sim, const struct two_phase *before) {
   fields_restore(&sim->grid.fields, sim->grid.mesh);
+  slip_strip_renew(&sim->grid, sim->c->v);
   sim->planes_hold = false;
   sim->energy = before->energy;
   sim->divergence_volume = before->divergence_volume;

@@ -137,6 +137,20 @@ bad_rings rings_periodic 'boundary.left = "periodic": .* do not meet' \
   'left = "symmetry", right = "no_slip"' 'left = "periodic", right = "periodic"'
 bad_rings rings_walls 'rings_walls.lua:4: grains.side_walls: they stand across' \
   'density = 1,' 'density = 1, side_walls = { mu = 0.2, width = 1 },'
+bad_edit strip_length 'boundary.bottom.length is missing: a number >= 0' \
+  'bottom = "no_slip"' 'bottom = { "slip_strip" }'
+bad_edit strip_negative 'boundary.bottom.length = -1: a number >= 0 is needed' \
+  'bottom = "no_slip"' 'bottom = { "slip_strip", length = -1 }'
+bad_edit strip_patch 'boundary.patches.a: a patch cannot be a slip_strip' \
+  'bottom = "no_slip"' \
+  'bottom = function(x, y) return x < 1 and "a" or "no_slip" end,
+    patches = { a = { "slip_strip", length = 1 } }'
+bad_case strip_alone 'strip_alone.lua:5: boundary.bottom = "slip_strip" has gas' \
+  'return { dimension = 2, domain = { size = 4, level = 5 }, gravity = { 0, -1 },
+  grains = { density = 1, rheology = { "newtonian", eta = 1 } },
+  boundary = { left = "symmetry", right = "no_slip",
+    top = { "outflow", pressure = 0 },
+    bottom = { "slip_strip", length = 1 } }, output = { stop = 1 } }'
 bad_edit walls_width 'walls_width.lua:4: grains.side_walls.width is missing' \
   'density = 1,' 'density = 1, side_walls = { mu = 0.2 },'
 bad_edit walls_key 'walls_key.lua:4: unknown key grains.side_walls.w = 1' \

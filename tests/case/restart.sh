@@ -94,8 +94,8 @@ must 2 talus2d run $rest -o yield --quiet
 stops 2 talus2d run $rest -o yields --quiet --max-steps 31
 must 2 talus2d run $rest -o yields --quiet --restart
 same "rest on 2" yield yields
-# around an axis, where it has one row more
-cylinder="$root/examples/cylinder.lua cells=8 stop=1"
+# around an axis, where it has one row more, and on a floor that changes
+cylinder="$root/examples/cylinder.lua cells=8 stop=1 strip=5 r_i=0.02"
 for n in 1 2; do
   must $n talus2d run $cylinder -o cylinder-$n --quiet
   stops $n talus2d run $cylinder -o rings-$n --quiet --max-steps 13
@@ -105,6 +105,11 @@ done
 awk -v a="$(last cylinder-1 5)" -v b="$(last cylinder-2 5)" \
   'BEGIN { exit !(a - b < 0.01 && b - a < 0.01) }' ||
   complain "the front of a cylinder depends on ranks"
+quarter="$root/examples/cylinder.lua dimension=3 cells=4 stop=1 strip=5 r_i=0.02"
+must 2 talus3d run $quarter -o quarter --quiet
+stops 2 talus3d run $quarter -o quarters --quiet --max-steps 9
+must 2 talus3d run $quarter -o quarters --quiet --restart
+same "quarter of a cylinder on 2" quarter quarters
 sed 's/"axisymmetric" or/"cartesian" or/' "$root/examples/cylinder.lua" > plane.lua
 refused "another kind of coordinates" 1 talus2d run plane.lua cells=8 stop=1 \
   -o rings-1 --restart
