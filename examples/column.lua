@@ -59,6 +59,8 @@ local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
 local eta_max = param("eta_max", 10, "cap on viscosity, in rho sqrt(g L0^3)")
+local eta_min = param("eta_min", math.sqrt(d^3),
+                      "least viscosity, in rho sqrt(g L0^3)")
 local regularisation = param("regularisation", "clip",
                              "of the yield stress; exact: without eta_max")
 local slip = param("slip", 0, "slip length of the floor, in L0; 0: rough")
@@ -77,7 +79,6 @@ param("reference", a == 6.26 and "reference/contact_dynamics_a6.26.csv" or "",
 
 local rho, g = 1, 1                     -- the units
 local eta_gas = 1e-4                    -- rho sqrt(g L0^3)
-local eta_min = rho * math.sqrt(g * d^3)
 local width, height = 1, a              -- of the column
 -- a box so much smaller that its cells end `shift` cells off the side
 local box = size / (1 + shift * size / 2^level)

@@ -51,6 +51,8 @@ local d = param("d", math.sqrt(a / 6041), "grain diameter, in L0")
 local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
+local eta_min = param("eta_min", math.sqrt(d^3),
+                      "least viscosity, in rho sqrt(g L0^3)")
 local slip = param("slip", 4 * d, "slip length of the floor, in L0; 0: rough")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 local picard = param("picard", 0, "repetitions within a step")
@@ -76,7 +78,7 @@ return {
   grains = {
     density = rho,
     rheology = { "mu_i", mu_s = mu_s, delta_mu = delta_mu, I0 = I0, d = d,
-                 eta_min = rho * math.sqrt(g * d^3), regularisation = "exact" },
+                 eta_min = eta_min, regularisation = "exact" },
     shape = function(x, y) return math.min(1 - x, a - y) end,
   },
   gas = { density = rho_gas, rheology = { "newtonian", eta = eta_gas } },

@@ -9,7 +9,7 @@ PAPER is a module of tools/papers (lagree_staron_popinet_2011, valette_2019);
 without a FIGURE its figures are listed, `all` draws all. The case is run as
 often as the figure needs, N cells to the half-width of the column (default: as
 the figure says); name=value holds for all runs, as in slip=0.05. DIR (default:
-figures/PAPER) gets one directory per run, in `runs`, and for each figure
+PAPER.out) gets one directory per run, in `runs`, and for each figure
   NAME.png   the figure
   NAME.csv   its table: quantity, ours, the paper's, lowest and highest value
              allowed where there is a bar, and whether it is kept
@@ -37,7 +37,7 @@ def parse_options():
     parser.add_argument("words", metavar="FIGURE", nargs="*",
                         help="its number, `all`, or name=value for all runs")
     parser.add_argument("-o", "--output", metavar="DIR", type=pathlib.Path,
-                        help="where to run and draw, default figures/PAPER")
+                        help="where to run and draw, default PAPER.out")
     parser.add_argument("--cells", metavar="N", type=int,
                         help="to the half-width of a column, a power of two")
     parser.add_argument("--talus", type=pathlib.Path, default=run_cases.TALUS,
@@ -72,7 +72,7 @@ def main():
             print(f"{name:>4}  {title}")
         return 0
     study = Study(run_cases.check_program(options.talus),
-                  options.output or pathlib.Path("figures") / options.paper,
+                  options.output or pathlib.Path(f"{options.paper}.out"),
                   options.cells, [w for w in options.words if "=" in w])
     for name in names:
         title, draw = paper.FIGURES[name]
