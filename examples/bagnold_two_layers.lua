@@ -37,7 +37,8 @@
 -- like a solid. Under the lightest, air, two percent are lost.
 --
 -- Try. ratio=0.4: only the lowest fifth of the grains is sheared; nu=1: a
--- fluid ten times as viscous; eta_max=100: the solid top of ratio=0.4 creeps.
+-- fluid ten times as viscous; regularisation=clip eta_max=100: the solid top of
+-- ratio=0.4 creeps.
 
 local slope = param("slope", 0.43, "inclination of the channel, in rad")
 local ratio = param("ratio", 0.001, "density of the fluid over that of grains")
@@ -50,7 +51,9 @@ local d = param("d", 0.04, "grain diameter, in H")
 local mu_s = param("mu_s", 0.38, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.26, "rise of friction at large I")
 local I0 = param("I0", 0.3, "inertial number at half that rise")
-local eta_max = param("eta_max", 1e4, "cap on viscosity, in rho sqrt(g H^3)")
+local regularisation = param("regularisation", "exact", "of the yield stress")
+local eta_max = param("eta_max", 1e4,
+                      "cap on viscosity, in rho sqrt(g H^3); of clip only")
 local tolerance = param("tolerance", 1e-8, "of the linear solvers")
 param("length_unit", "$H$", "name of the unit, for pictures")
 param("time_unit", "$\\sqrt{H/g}$", "name of the unit, for pictures")
@@ -78,7 +81,8 @@ return {
   grains = {
     density = rho,
     rheology = { "mu_i", mu_s = mu_s, delta_mu = delta_mu, I0 = I0, d = d,
-                 eta_min = 1e-8, eta_max = eta_max },
+                 eta_min = 1e-8, regularisation = regularisation,
+                 eta_max = regularisation ~= "exact" and eta_max or nil },
     shape = function(x, y) return H - y end,
   },
   gas = { density = rho_f, rheology = { "newtonian", eta = rho_f * nu } },

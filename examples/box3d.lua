@@ -24,8 +24,10 @@ local stop = param("stop", 2, "time of the end, in sqrt(L0/g)")
 local d = param("d", 0.05, "grain diameter, in L0")
 local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 
--- its heap at rest creeps at rho g sin(alpha) a^2/(2 eta_max), tan(alpha) =
--- mu_s, less than 1e-4 sqrt(g a)
+local regularisation = param("regularisation", "exact", "of the yield stress")
+
+-- of clip: its heap at rest creeps at rho g sin(alpha) a^2/(2 eta_max),
+-- tan(alpha) = mu_s, less than 1e-4 sqrt(g a)
 local eta_max = 6000 * math.sin(math.atan(mu_s)) * a^1.5  -- rho sqrt(g L0^3)
 
 return {
@@ -38,7 +40,8 @@ return {
     density = 1,
     rheology = { "mu_i", mu_s = mu_s, delta_mu = 0.28, I0 = 0.4, d = d,
                  eta_min = math.sqrt(d^3),  -- rho sqrt(g d^3)
-                 eta_max = eta_max },
+                 regularisation = regularisation,
+                 eta_max = regularisation ~= "exact" and eta_max or nil },
     shape = function(x, y, z) return math.min(1 - x, 1 - y, a - z) end,
   },
   gas = { density = 1e-3, rheology = { "newtonian", eta = 1e-4 } },

@@ -37,8 +37,9 @@
 --     - (m - mu_s)),  m = rho g H/P = 0.5:
 -- 6.418 sqrt(g d). Let go from rest, it is within 1 % of that at t = 180.
 --
--- Try. pressure=40: a slower, wider plug; pressure=44: the grains stay, their
--- creep is rho g (H^2 - x^2)/(2 eta_max); I0=0.2: grains that resist more.
+-- Try. pressure=40: a slower, wider plug; pressure=44: the grains stay, and with
+-- regularisation=clip creep at rho g (H^2 - x^2)/(2 eta_max); I0=0.2: grains
+-- that resist more.
 
 local half_width = param("half_width", 14, "half-width of the chute, in d")
 local pressure = param("pressure", 28, "pressure between grains, in rho g d")
@@ -48,7 +49,9 @@ local stop = param("stop", 400, "time of the end, in sqrt(d/g)")
 local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
-local eta_max = param("eta_max", 1e5, "cap on viscosity, in rho sqrt(g d^3)")
+local regularisation = param("regularisation", "exact", "of the yield stress")
+local eta_max = param("eta_max", 1e5,
+                      "cap on viscosity, in rho sqrt(g d^3); of clip only")
 local tolerance = param("tolerance", 1e-8, "of the linear solvers")
 param("length_unit", "$d$", "name of the unit, for pictures")
 param("time_unit", "$\\sqrt{d/g}$", "name of the unit, for pictures")
@@ -65,7 +68,8 @@ return {
   grains = {
     density = rho,
     rheology = { "mu_i", mu_s = mu_s, delta_mu = delta_mu, I0 = I0, d = d,
-                 eta_min = 1e-8, eta_max = eta_max },
+                 eta_min = 1e-8, regularisation = regularisation,
+                 eta_max = regularisation ~= "exact" and eta_max or nil },
   },
 
   boundary = {

@@ -15,7 +15,8 @@
 -- Numbers. law = mu_i: mu(I) = mu_s + delta_mu/(I0/I + 1) with 0.32, 0.28, 0.4
 --   and d = 0.0219; newtonian: eta = 0.1; bingham: eta = 0.001 + 0.1/gamma;
 --   bagnold: eta = rho d^2 gamma with d = 1/32; coulomb: mu = 0.33. The grains
---   are never stiffer than eta_max, the gas is 1000 times lighter.
+--   are never stiffer than eta_max, as in the paper (regularisation=exact caps
+--   nothing); the gas is 1000 times lighter.
 --
 -- Source. P.-Y. Lagree, L. Staron & S. Popinet, The granular column collapse as
 -- a continuum: validity of a two-dimensional Navier-Stokes model with a
@@ -45,6 +46,8 @@ local level = param("level", 7, "finest grid: size/2^level")
 local stop = param("stop", 4, "time of the end, in sqrt(H0/g)")
 -- so that heaps of friction 0.33 creep at less than 1e-4 sqrt(g H0): rho g
 -- sin(alpha) H0^2/(2 eta_max), tan(alpha) = 0.33
+local regularisation = param("regularisation", "clip",
+                             "of a yield stress; exact: without eta_max")
 local eta_max = param("eta_max", 6000 * math.sin(math.atan(0.33)) * a^1.5,
                       "cap on viscosity, in rho sqrt(g L0^3)")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
@@ -64,7 +67,9 @@ local laws = {
 }
 local rheology = laws[law]
 if not rheology then error("no such law: " .. law) end
-rheology.eta_max = eta_max
+local yields = law ~= "newtonian" and law ~= "bagnold"
+if yields then rheology.regularisation = regularisation end
+if regularisation ~= "exact" or not yields then rheology.eta_max = eta_max end
 
 local profile_times = {}                -- every half sqrt(H0/g)
 for i = 0, 2 * stop do profile_times[i + 1] = 0.5 * i * math.sqrt(a / g) end

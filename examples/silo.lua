@@ -58,10 +58,8 @@ local stop = param("stop", 4, "time of the end, in sqrt(30 d/g)")
 local mu_s = param("mu_s", 0.32, "friction coefficient at rest")
 local delta_mu = param("delta_mu", 0.28, "rise of friction at large I")
 local I0 = param("I0", 0.4, "inertial number at half that rise")
--- grains at rest creep; 1e-4 sqrt(g fill) needs 5000 sin(alpha) fill^1.5 = 18000,
--- with which the rate is the same to 1 %, the run takes 1.3 times as long, and a
--- little gas (7e-4) gets into an outlet
-local eta_max = param("eta_max", 100, "cap on viscosity")
+local regularisation = param("regularisation", "exact", "of the yield stress")
+local eta_max = param("eta_max", 100, "cap on viscosity; of clip only")
 local tolerance = param("tolerance", 1e-4, "of the linear solvers")
 param("length_unit", "$30\\,d$", "name of the unit, for pictures")
 param("time_unit", "$\\sqrt{30\\,d/g}$", "name of the unit, for pictures")
@@ -80,7 +78,9 @@ return {
   grains = {
     density = rho,
     rheology = { "mu_i", mu_s = mu_s, delta_mu = delta_mu, I0 = I0, d = d,
-                 eta_min = rho * math.sqrt(g * d^3), eta_max = eta_max },
+                 eta_min = rho * math.sqrt(g * d^3),
+                 regularisation = regularisation,
+                 eta_max = regularisation ~= "exact" and eta_max or nil },
     shape = function(x, y) return fill - y end,
   },
   gas = { density = 1e-4, rheology = { "newtonian", eta = 1e-5 } },

@@ -30,7 +30,8 @@ RUNS = {
     "column 10": ("talus2d", "examples/column.lua level=10"),
     "column 11": ("talus2d", "examples/column.lua level=11"),
     "cavity 8": ("talus2d", "tests/bench/cavity.lua --max-steps 100"),
-    "box3d 7": ("talus3d", "examples/box3d.lua level=7 --max-steps 60"),
+    "box3d 7": ("talus3d", "examples/box3d.lua level=7 regularisation=clip "
+                "--max-steps 60"),
     "bed 7": ("talus2d", "tests/bench/bed.lua level=7 --max-steps 100"),
     "bed 10": ("talus2d", "tests/bench/bed.lua level=10 --max-steps 5"),
     "bed3d 7": ("talus3d",

@@ -192,9 +192,10 @@ static void check_yield(struct case_file *file) {
   if (grains->model != NULL && grains->regularisation == RHEOLOGY_EXACT &&
       rheology_yields(grains) && params->theta < 1)
     read_fail_at(file, "solver.theta",
-                 "solver.theta = %g: regularisation = \"exact\" needs backward "
-                 "Euler, solver.theta = 1",
-                 params->theta);
+                 "solver.theta = %g: regularisation = \"exact\", the default "
+                 "of %s, needs backward Euler, solver.theta = 1; with another "
+                 "theta say regularisation = \"clip\"",
+                 params->theta, grains->model->name);
 }
 
 static void check_walls(struct case_file *file) {

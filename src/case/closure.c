@@ -56,11 +56,38 @@ static void push_option(lua_State *L, const char *name) {
     lua_pushnil(L);
 }
 
+/* Does the table of the closure on top give a cohesion? */
+static bool is_cohesive(lua_State *L) {
+  push_option(L, "cohesion");
+  const bool given = !lua_isnil(L, -1);
+  const bool none = lua_type(L, -1) == LUA_TNUMBER && lua_tonumber(L, -1) == 0;
+  lua_pop(L, 1);
+  return given && !none;
+}
+
+/* Refuse a regularisation of a yield stress that is not there. */
+static void check_regularisation(struct case_file *file, const char *closure,
+                                 const struct rheology *rheology, bool yields) {
+  const char *name = rheology_regularisation_name(rheology->regularisation);
+  if (yields || rheology->regularisation == RHEOLOGY_CLIP ||
+      rheology->regularisation == RHEOLOGY_EXACT) /* its words come later */
+    return;
+  read_fail_at(file, closure,
+               "%s: regularisation = \"%s\" has no meaning, as %s has no yield "
+               "stress that it could regularise: take it out, or give cohesion",
+               closure, name, rheology->model->name);
+}
+
+/* Read the regularisation. Grains that hold a stress at rest have an exact one
+ * unless the case says otherwise. */
 static void read_regularisation(struct case_file *file, const char *closure,
-                                struct rheology *rheology) {
+                                bool grains, struct rheology *rheology) {
   lua_State *L = file->L;
   char path[PATH_LENGTH];
   path_join(path, closure, "regularisation");
+  const bool cohesive = is_cohesive(L);
+  if (grains && (rheology->model->holds || cohesive))
+    rheology->regularisation = RHEOLOGY_EXACT;
   push_option(L, "regularisation");
   bool given = !lua_isnil(L, -1);
   if (given && (lua_type(L, -1) != LUA_TSTRING ||
@@ -75,10 +102,9 @@ static void read_regularisation(struct case_file *file, const char *closure,
     read_fail(file, path, "no such regularisation%s", known);
   }
   lua_pop(L, 1);
-  push_option(L, "cohesion");
-  bool yields = rheology->model->yield != NULL || !lua_isnil(L, -1);
-  lua_pop(L, 1);
-  if (!given && !yields) return;
+  const bool yields = rheology->model->yield != NULL || cohesive;
+  check_regularisation(file, closure, rheology, yields);
+  if (!given && !yields && !rheology->model->holds) return;
   rows_add(file, path, rheology_regularisation_name(rheology->regularisation),
            "", "how a yield stress becomes a viscosity at small shear rates",
            given ? "case" : "default");
@@ -140,21 +166,29 @@ static void read_key(struct case_file *file, const char *closure,
                  known->help);
   }
   const bool exact = phase->rheology.regularisation == RHEOLOGY_EXACT;
-  if (exact && (strcmp(known->name, "eta_max") == 0 ||
-                strcmp(known->name, "gamma_r") == 0)) {
+  const bool clip = phase->rheology.regularisation == RHEOLOGY_CLIP;
+  const bool rate = strcmp(known->name, "gamma_r") == 0;
+  if (exact && (rate || strcmp(known->name, "eta_max") == 0)) {
     if (given)
-      read_fail_at(file, path,
-                   "%s = %g has no meaning with regularisation = \"exact\", "
-                   "which caps nothing: take it out, or take \"clip\"",
-                   path, value);
+      read_fail_at(
+          file, path,
+          "%s = %g has no meaning with regularisation = \"exact\", the "
+          "default of %s, which caps nothing: take it out, or say "
+          "regularisation = \"%s\"",
+          path, value, phase->rheology.model->name,
+          rate ? "papanastasiou" : "clip");
     return;
   }
+  if (clip && rate && given)
+    read_fail_at(file, path,
+                 "%s = %g has no meaning with regularisation = \"clip\": take "
+                 "it out, or take \"papanastasiou\" or "
+                 "\"bercovier_engelman\"",
+                 path, value);
   rheology_set(&phase->rheology, known->name, value);
   if (!given && strcmp(known->name, "cohesion") == 0) return;
   /* Nothing depends on the shear rate of a regularisation that is not used. */
-  if (!given && strcmp(known->name, "gamma_r") == 0 &&
-      phase->rheology.regularisation == RHEOLOGY_CLIP)
-    return;
+  if (rate && clip) return;
   text_number(value, sizeof number, number);
   rows_add(file, path, number, unit, known->help, given ? "case" : "default");
 }
@@ -167,7 +201,8 @@ void closure_read(struct case_file *file, const struct key *key) {
   check_names(file, key, model);
   rows_add(file, key->path, model->name, "", model->title, "case");
   if (model->eval == NULL) read_viscosity(file, key->path, &phase->rheology);
-  read_regularisation(file, key->path, &phase->rheology);
+  read_regularisation(file, key->path, phase == &file->params.grains,
+                      &phase->rheology);
   for (int i = 0; rheology_key(model, i) != NULL; i++)
     read_key(file, key->path, phase, i);
   if (phase->rheology.regularisation == RHEOLOGY_EXACT &&

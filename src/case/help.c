@@ -16,8 +16,7 @@ static const char INTRODUCTION[] =
     "    gravity = { 0, -1 },\n"
     "    grains = {\n"
     "      density = 1,\n"
-    "      rheology = { \"mu_i\", mu_s = 0.32, d = 0.02,\n"
-    "                   eta_max = 6000 * 0.305 * a^1.5 }, -- see eta_max\n"
+    "      rheology = { \"mu_i\", mu_s = 0.32, d = 0.02 },\n"
     "      shape = function(x, y) return math.min(1 - x, a - y) end,\n"
     "    },\n"
     "    gas = { density = 1e-3, rheology = { \"newtonian\", eta = 1e-4 } },\n"
@@ -120,6 +119,17 @@ static void print_closure_key(FILE *f, const struct rheology_key *key) {
 }
 
 static const char CREEP[] =
+    "  regularisation = \"exact\" is the default of grains with a yield stress "
+    "at\n"
+    "  rest, cohesion included: where it is not reached they come to rest, "
+    "and\n"
+    "  run.log and the end of the run say when. It caps nothing, so eta_max "
+    "and\n"
+    "  gamma_r are refused. mu_i_well_posed has no such stress: its friction "
+    "falls\n"
+    "  to 0 with the shear rate.\n"
+    "  regularisation = \"clip\" cuts the viscosity at eta_max, as most papers "
+    "do.\n"
     "  eta_max lets grains that should rest creep at up to\n"
     "    rho g sin(alpha) H^2/(2 eta_max), tan(alpha) = mu_s,\n"
     "  H their height at the start. 5000 rho sin(alpha) sqrt(g H^3) keeps "
@@ -128,9 +138,7 @@ static const char CREEP[] =
     "  whatever the cap, as friction vanishes with the pressure at a surface:\n"
     "  the top of a slope of 0.2 (mu_s = 0.38) sinks by that until t = 50\n"
     "  sqrt(H/g) on cells of H/8 and H/16, eta_max = 1e3 and 1e4.\n"
-    "  regularisation = \"exact\" caps nothing: grains whose yield stress is "
-    "not\n"
-    "  reached come to rest (examples/rest.lua).\n";
+    "  \"papanastasiou\" and \"bercovier_engelman\" are smooth at gamma_r.\n";
 
 static void print_closures(FILE *f) {
   const struct rheology_model *model;

@@ -100,6 +100,23 @@ static void measure_sums(const struct two_phase *sim, const double *c,
   diagnostics->max_speed = sqrt(mesh_max(mesh, fastest));
 }
 
+double diagnostics_flowing(struct two_phase *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double sum[2] = {0}, *state;
+  if (!sim->exact) return 1;
+  state = MEM_NEW(double, mesh->nleaves);
+  yield_find_state(sim, state);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double grains = sim->c->v[i] * mesh_volume(mesh, i);
+    sum[0] += grains * state[i];
+    sum[1] += grains;
+  }
+  mem_free(state);
+  const double flowing = mesh_sum(mesh, sum[0]);
+  const double volume = mesh_sum(mesh, sum[1]);
+  return volume > 0 ? flowing / volume : 0;
+}
+
 double diagnostics_gas(const struct two_phase *sim) {
   struct diagnostics diagnostics;
   field_fill(sim->grid.mesh, sim->c);

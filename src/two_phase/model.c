@@ -139,6 +139,7 @@ enum {
   REPEAT_CHANGE,
   WORK_OF_CHANGES,
   GIVEN_TO_GAS,
+  FLOWING,
   NCOLUMNS
 };
 
@@ -196,11 +197,14 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [GIVEN_TO_GAS] = {"given_to_gas", COLUMN_SHORT, ENERGY_UNIT,
                       "by the grains, in a box that as much gas enters as "
                       "leaves: it rises where they fall"},
+    [FLOWING] = {"flowing", COLUMN_SHORT, "",
+                 "part of the volume of the grains that is at its yield stress "
+                 "if that is exact; else 1"},
 };
 /* clang-format on */
 
 static void set_row(const struct two_phase *sim, const struct diagnostics *d,
-                    double value[NCOLUMNS]) {
+                    double flowing, double value[NCOLUMNS]) {
   const struct model *model = &sim->model;
   const struct energy *energy = &sim->energy;
   const double given = d->gas - energy->gas + energy->gas_dissipated;
@@ -229,6 +233,7 @@ static void set_row(const struct two_phase *sim, const struct diagnostics *d,
   value[REPEAT_CHANGE] = sim->repeat_change;
   value[WORK_OF_CHANGES] = energy->changed;
   value[GIVEN_TO_GAS] = given;
+  value[FLOWING] = flowing;
 }
 
 /* Warn before the first step if there are no grains. */
@@ -267,10 +272,11 @@ static void measure(struct model *model, double value[],
   struct diagnostics d;
   fractions_synchronise(sim);
   diagnostics_measure(sim, &d);
+  const double flowing = diagnostics_flowing(sim);
   if (outline) diagnostics_measure_layers(sim, &d);
   fractions_desynchronise(sim);
   keep_energies(sim, &d);
-  set_row(sim, &d, value);
+  set_row(sim, &d, flowing, value);
   if (outline) give_outline(&d, outline);
   diagnostics_free(&d);
 }

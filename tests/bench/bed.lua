@@ -13,7 +13,8 @@ return {
   gravity = gravity,
   grains = {
     density = 1,
-    rheology = { "mu_i", d = d, eta_min = math.sqrt(d^3), eta_max = 10 },
+    rheology = { "mu_i", d = d, eta_min = math.sqrt(d^3),
+                 regularisation = "clip", eta_max = 10 },
     shape = function(x, y, z)
       return 0.7 - 0.6 * x - (dimension == 2 and y or z)
     end,

@@ -9,7 +9,7 @@ mkdir cases work
 good='return { dimension = 2,
   domain = { size = 4, level = 5 },
   gravity = { 0, -1 },
-  grains = { density = 1, rheology = { "mu_i", d = 0.05, eta_max = 10 },
+  grains = { density = 1, rheology = { "mu_i", d = 0.05, eta_min = 0 },
     shape = function(x, y) return math.min(1 - x, 1 - y) end },
   gas = { density = 1e-3, rheology = { "newtonian", eta = 1e-4 } },
   boundary = { left = "symmetry", right = "no_slip", bottom = "no_slip",
@@ -93,20 +93,27 @@ bad_edit closure_together \
   'closure_together.lua:4: grains.rheology: nu_min < nu_0 < nu_max' \
   '"mu_i", d = 0.05' '"lee_huang", nu_0 = 0.64'
 bad_edit exact_cap 'exact_cap.lua:4: .*eta_max = 10 has no meaning with' \
-  'eta_max = 10' 'eta_max = 10, regularisation = "exact"'
-bad_case exact_theta 'exact_theta.lua:9: solver.theta = 0.5: .*"exact" needs' \
-  "$(sed 's/eta_max = 10/regularisation = "exact"/
+  'eta_min = 0' 'eta_max = 10'
+bad_case exact_theta 'exact_theta.lua:9: solver.theta = 0.5: .*"exact".* needs' \
+  "$(sed 's/eta_min = 0/regularisation = "exact"/
     s/output =/solver = { theta = 0.5 }, output =/' <<< "$good")"
+bad_edit exact_rate 'exact_rate.lua:4: .*gamma_r = 1 has .*say .*papanastasiou' \
+  'eta_min = 0' 'gamma_r = 1'
+bad_edit clip_rate 'clip_rate.lua:4: .*gamma_r = 1 has no meaning with .*"clip"' \
+  'eta_min = 0' 'gamma_r = 1, regularisation = "clip"'
+bad_edit nothing_to_hold \
+  'nothing_to_hold.lua:4: .*"papanastasiou" has no meaning, as newtonian has no' \
+  '"mu_i", d = 0.05' '"newtonian", eta = 1, regularisation = "papanastasiou"'
 bad_edit exact_of_none 'exact_of_none.lua:4: .*"exact" needs a stress that holds' \
-  '"mu_i", d = 0.05, eta_max = 10' '"newtonian", eta = 1, regularisation = "exact"'
+  '"mu_i", d = 0.05, eta_min = 0' '"newtonian", eta = 1, regularisation = "exact"'
 bad_edit exact_of_creep 'exact_of_creep.lua:4: .*, and mu_i_well_posed has none' \
-  '"mu_i", d = 0.05, eta_max = 10' \
+  '"mu_i", d = 0.05, eta_min = 0' \
   '"mu_i_well_posed", d = 0.05, regularisation = "exact"'
 bad_edit exact_gas 'exact_gas.lua:6: .*"exact" is for the grains' \
   '"newtonian", eta = 1e-4' \
   '"bingham", tau_y = 1, eta_0 = 1, regularisation = "exact"'
 bad_edit exact_name 'exact_name.lua:4: .*did you mean `?exact' \
-  'eta_max = 10' 'regularisation = "exct"'
+  'eta_min = 0' 'regularisation = "exct"'
 # coordinates
 rings="${good/dimension = 2,/dimension = 2, coordinates = \"axisymmetric\",}"
 # bad_rings NAME PATTERN FROM TO: the sound case around an axis, as bad_edit

@@ -13,7 +13,7 @@ return {
   dimension = 2, domain = { size = 4, level = level, level_min = 3 },
   gravity = { 0, -1 },
   grains = { density = 1, rheology = { "mu_i", d = 0.02, eta_min = 3e-3,
-      eta_max = 100 },
+      regularisation = "clip", eta_max = 100 },
     shape = function(x, y) return -1 end }, -- the jet brings them
   gas = { density = 1e-3, rheology = { "newtonian", eta = 1e-5 } },
   boundary = { left = "symmetry", right = "no_slip",
@@ -34,7 +34,7 @@ return {
   domain = { size = 2.5, trees = { 1, 2 }, level = 5, level_min = 2 },
   gravity = { 0, -1 },
   grains = { density = 1, rheology = { "mu_i", mu_s = 0.32, d = 1 / 30,
-      eta_min = 6e-3, eta_max = 100 },
+      eta_min = 6e-3, regularisation = "clip", eta_max = 100 },
     shape = function(x, y) return 3 - y end },
   gas = { density = 1e-4, rheology = { "newtonian", eta = 1e-5 } },
   boundary = { left = "symmetry", right = "no_slip",

@@ -14,7 +14,7 @@ return {
   domain = { size = 2.5, trees = { 1, 2 }, level = 5, level_min = 3 },
   grains = { density = 1, shape = function(x, y) return fill - y end,
     rheology = { "mu_i", mu_s = 0.32, delta_mu = 0.28, I0 = 0.4, d = 1 / 30,
-                 eta_min = 0.006, eta_max = 100 } },
+                 eta_min = 0.006, regularisation = "clip", eta_max = 100 } },
   gas = { density = 1e-4, rheology = { "newtonian", eta = 1e-5 } },
   boundary = { left = "symmetry", right = "no_slip",
     bottom = function(x, y) return open and x < 0.32 and "outlet" or "no_slip"

@@ -96,7 +96,8 @@ static struct midpoint { double l2, deep; } midpoint_errors(int level) {
 
 static struct example quadtree(int k, double slope) {
   return example_new("bagnold",
-                     "trees=%d level=2 refined=2 start=2 slope=%g eta_max=%g",
+                     "trees=%d level=2 refined=2 start=2 slope=%g "
+                     "regularisation=clip eta_max=%g",
                      1 << (FIRST + k - 2), slope, kEtaMax);
 }
 

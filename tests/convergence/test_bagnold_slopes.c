@@ -19,7 +19,9 @@ static double top_error(double slope, double eta_max) {
                            ? bagnold_exact(slope, y)
                            : sin(slope) * (y - 0.5 * y * y) / eta_max;
   struct example example =
-      example_new("bagnold", "trees=%d level=1 slope=%g start=0.98 eta_max=%g",
+      example_new("bagnold",
+                  "trees=%d level=1 slope=%g start=0.98 regularisation=clip "
+                  "eta_max=%g",
                   1 << (LEVEL - 1), slope, eta_max);
   struct two_phase *sim = example.sim;
   const bool good = run_steady(sim, kBagnoldSteady * exact, 5000);

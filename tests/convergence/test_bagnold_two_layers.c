@@ -9,9 +9,7 @@
  * eqs. 2.30-2.32]. u is 0 on both walls; tau_0 is that which makes it
  * continuous.
  *
- * Heavy fluids converge with order 1 only: on the faces between the layers the
- * viscosity of the grains is that at the shear rate of the whole line, most of
- * which is the fluid's, so the solid top of the grains gives way there. */
+ * Under the heaviest with a clipped viscosity too. */
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <gsl/gsl_roots.h>
@@ -96,10 +94,12 @@ struct result {
   double l2, across;
 };
 
-static struct result measure(const struct layers *layers, int level) {
-  struct example example =
-      example_new("bagnold_two_layers", "trees=%d level=1 ratio=%g start=%d",
-                  1 << (level - 1), layers->ratio, layers->ratio < 0.05);
+static struct result measure(const struct layers *layers, int level,
+                             const char *regularisation) {
+  struct example example = example_new(
+      "bagnold_two_layers",
+      "trees=%d level=1 ratio=%g start=%d regularisation=%s", 1 << (level - 1),
+      layers->ratio, layers->ratio < 0.05, regularisation);
   struct two_phase *sim = example.sim;
   const struct mesh *mesh = sim->grid.mesh;
   struct result result = {NAN, NAN};
@@ -118,21 +118,22 @@ static struct result measure(const struct layers *layers, int level) {
   return result;
 }
 
-static void run_ratio(struct report *report, double ratio, double surface) {
+static void run_ratio(struct report *report, double ratio, double surface,
+                      const char *regularisation) {
   const struct layers layers = layers_of(ratio);
   struct result result[N];
   double l2[N];
   char grid[32];
-  snprintf(grid, sizeof grid, "density ratio %g", ratio);
+  snprintf(grid, sizeof grid, "density ratio %g %s", ratio, regularisation);
   /* the reference itself, to a unit of the last digit known: 2.022646,
    * 1.735545, 0.706258, 0.042511 by another quadrature */
   report_at_most(report, grid, "u(H) of the reference less digits known", 0,
                  fabs(exact(&layers, 1 - 1e-15) - surface), 1e-4);
   for (int k = 0; k < N; k++) {
-    result[k] = measure(&layers, FIRST + k);
+    result[k] = measure(&layers, FIRST + k, regularisation);
     l2[k] = result[k].l2;
   }
-  report_errors(report, grid, "L2 of u over max u", FIRST, N, l2, NULL, 1);
+  report_errors(report, grid, "L2 of u over max u", FIRST, N, l2, NULL, 1.8);
   report_at_most(report, grid, "L2 of u over max u against its bar",
                  FIRST + N - 1, l2[N - 1], 1e-2);
   for (int k = 0; k < N; k++) {
@@ -143,7 +144,10 @@ static void run_ratio(struct report *report, double ratio, double surface) {
 static void run(struct report *report) {
   static const double ratio[NRATIOS] = {1e-3, 1e-2, 0.1, 0.4};
   static const double surface[NRATIOS] = {2.0227, 1.7355, 0.7063, 0.0425};
-  for (int k = 0; k < NRATIOS; k++) run_ratio(report, ratio[k], surface[k]);
+  for (int k = 0; k < NRATIOS; k++) {
+    run_ratio(report, ratio[k], surface[k], "exact");
+  }
+  run_ratio(report, ratio[3], surface[3], "clip");
 }
 
 const struct convergence_case bagnold_two_layers_case = {

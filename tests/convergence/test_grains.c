@@ -27,14 +27,17 @@ static const char kDiscs[] = "examples/reference/contact_dynamics_a6.26.csv";
 static const double kLength = 0.056, kHeight = 0.1344, kGravity = 9.81;
 
 /* Report outlines at the times of kBeads. */
-static void report_bead_outlines(struct report *report, int level) {
+static void report_bead_outlines(struct report *report, int level,
+                                 const char *regularisation) {
   static const double time[] = {0.5, 1, 2, 3}, bar = 0.055;
-  struct example example = example_new("lee_huang_column", "level=%d", level);
+  struct example example = example_new(
+      "lee_huang_column", "level=%d regularisation=%s", level, regularisation);
   for (int k = 0; k < 4; k++) {
     static struct curve ours, beads;
     struct diagnostics d;
     char norm[64];
-    snprintf(norm, sizeof norm, "difference of outlines at %g tau_c", time[k]);
+    snprintf(norm, sizeof norm, "difference of outlines at %g tau_c %s",
+             time[k], regularisation);
     const bool good =
         measure_at(&example, time[k] * sqrt(kHeight / kGravity), &d);
     curve_of_outline(&d.outline, &ours);
@@ -116,7 +119,8 @@ static void report_glass_beads(struct report *report) {
 }
 
 static void run(struct report *report) {
-  report_bead_outlines(report, 8);
+  report_bead_outlines(report, 8, "exact");
+  report_bead_outlines(report, 8, "clip");
   report_glass_beads(report);
   for (int level = 9; level <= 10; level++) report_disc_outlines(report, level);
 }

@@ -18,7 +18,7 @@ static const char kJet[] =
     "  domain = { size = 4, level = level, level_min = 3 },\n"
     "  gravity = { 0, -1 },\n"
     "  grains = { density = 1, rheology = { 'mu_i', mu_s = 0.6, d = 0.02,\n"
-    "      eta_min = 3e-3, eta_max = 100 },\n"
+    "      eta_min = 3e-3, regularisation = 'clip', eta_max = 100 },\n"
     "    shape = function(x, y) return -y end },\n"
     "  gas = { density = 1e-3, rheology = { 'newtonian', eta = 1e-5 } },\n"
     "  boundary = { left = 'symmetry', right = { 'outflow' },\n"

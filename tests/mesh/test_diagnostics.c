@@ -413,6 +413,32 @@ START_TEST(layers_add_up_to_the_heap) {
 END_TEST
 
 Suite *diagnostics_suite(void);
+/* Grains above the middle of a box are at their yield stress. */
+START_TEST(flowing_is_the_part_at_its_yield_stress) {
+  struct params params = box_params(3);
+  rheology_set(&params.grains.rheology, "cohesion", 1);
+  rheology_set_regularisation(&params.grains.rheology, _i ? "clip" : "exact");
+  struct two_phase *sim = sim_new(&params, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) sim->c->v[i] = 1;
+  for (int d = 0; d < DIM && !_i; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const double half = mesh->face_node[f][0] == mesh->face_owner[f] ? 1 : -1;
+      const int32_t i = mesh->face_owner[f];
+      const double z =
+          mesh->x[i][DIM - 1] + (d == DIM - 1 ? 0.5 * half * mesh->h[i] : 0);
+      sim->yield.tau_y->v[f] = 2;
+      sim->yield.s[d == 0]->v[f] = z > 0.5 + 1e-9 ? 2 : 1.99;
+    }
+  }
+  const double flowing = diagnostics_flowing(sim);
+  two_phase_destroy(sim);
+  /* half of the leaves, less one side of the lowest of them */
+  const double exact = 0.5 - 0.125 / (2 * DIM);
+  ck_assert_double_eq_tol(flowing, _i ? 1 : exact, 1e-12);
+}
+END_TEST
+
 Suite *diagnostics_suite(void) {
   Suite *suite = suite_create("diagnostics");
   TCase *tcase = tcase_create("droplets");
@@ -420,6 +446,7 @@ Suite *diagnostics_suite(void) {
   tcase_add_test(tcase, cells_that_share_a_corner_are_apart);
   tcase_add_test(tcase, a_winding_set_is_one_set);
   tcase_add_test(tcase, an_empty_box_has_neither_heap_nor_droplets);
+  tcase_add_loop_test(tcase, flowing_is_the_part_at_its_yield_stress, 0, 2);
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("outline");
   tcase_add_test(tcase, the_front_of_a_wedge_on_the_wall_is_interpolated);

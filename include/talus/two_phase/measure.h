@@ -8,6 +8,9 @@
  *   gas        kinetic and potential energy of the rest of the box
  *   max_speed  |u| of cells with c > 1/2, m/s
  *   shear_rate mean over the grains, 1/s (closure_fields.h)
+ *   flowing    part of the volume of the grains that is at its yield stress,
+ *              sum c V yield_state/sum c V (yield.h); 1 if it is not exact, as
+ *              what is below it creeps then
  *   layer      int min(tracer, c) dz of the heap per column, m
  *
  * In axisymmetric coordinates sums are those of the whole turn around the axis,
@@ -37,6 +40,8 @@ struct diagnostics {
   double *layer[PARAMS_MAX_TRACERS]; /* as outline.height, owned; or NULL */
 };
 
+/* Return the part of the grains that flows. Collective. */
+double diagnostics_flowing(struct two_phase *sim);
 /* Return the energy of the gas alone. Collective. */
 double diagnostics_gas(const struct two_phase *sim);
 /* Measure the state, which is left as it is but for scratch. Collective; the
