@@ -87,7 +87,7 @@ return {
   boundary = { left = "slip", right = "no_slip", bottom = "no_slip",
                top = "slip" },
 
-  adapt = adaptive == 1 and { { "interface", width = 3 }, { "inside" } } or nil,
+  adapt = adaptive == 1 and { { "interface", width = 2 }, { "inside" } } or nil,
   solver = { tolerance = param("tolerance", 1e-4, "of the solvers"),
              cfl = param("cfl", 0.45, "largest Courant number") },
   output = { stop = stop * tau_c, length_scale = length,

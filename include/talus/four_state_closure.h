@@ -43,15 +43,20 @@ struct four_state_closure {
   double p_D[2];  /* p_D/(rho_d T) at nu_D and its slope */
   double p_K[2];  /* p_K/(rho_d T) at nu_0 and its slope */
   double p_ES[2]; /* p_ES at nu_max and its slope, Pa */
+  /* max(p_K, p_D)/(rho_d T) and its slope, p_ES and its slope, at nodes every
+   * 1/per_nu up to nu_max; owned */
+  double (*table)[4];
+  double per_nu;
 };
 
 /* Prepare the closures for parameters [LEE_HUANG_NKEYS]; returns NULL, or what
- * is wrong with them. */
+ * is wrong with them; then there is nothing to release. */
 const char *four_state_closure_init(struct four_state_closure *closure,
                                     const double *param, double knudsen);
+void four_state_closure_release(struct four_state_closure *closure);
 
 /* Return p, Pa; slope: unless NULL, its derivative in nu at fixed T. nu >= 0,
- * T >= 0. */
+ * T >= 0. From a table of cubic pieces, to 1e-7. */
 double four_state_pressure(const struct four_state_closure *closure, double nu,
                            double T, double *slope);
 /* Return p_K and p_E, Pa. */
@@ -59,10 +64,10 @@ double four_state_kinetic_pressure(const struct four_state_closure *closure,
                                    double nu, double T);
 double four_state_contact_pressure(const struct four_state_closure *closure,
                                    double nu, double T);
-/* Return the nu of a pressure p > 0 at T, to 1e-14; from: any nu with a
- * pressure below p. */
+/* Return the nu of a pressure p > 0 at T, to 1e-14. from: any nu with a
+ * pressure below p; guess: where to begin, best a little above. */
 double four_state_solid_fraction(const struct four_state_closure *closure,
-                                 double p, double T, double from);
+                                 double p, double T, double from, double guess);
 /* Return the nu > nu_min at which p_ES = p >= 0, nu_min for 0. */
 double four_state_packed(const struct four_state_closure *closure, double p);
 /* Return the integral of p_ES/nu^2 from nu_min to nu: the elastic energy per

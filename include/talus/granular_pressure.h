@@ -31,9 +31,10 @@ struct granular_material {
   /* Return P(nu), Pa, and its slope. */
   double (*pressure)(const void *context, int32_t leaf, double nu,
                      double *slope);
-  /* Return the nu of a pressure above that of `from`. */
+  /* Return the nu of a pressure p above that of `from`, which lies below
+   * `guess`. */
   double (*solid_fraction)(const void *context, int32_t leaf, double p,
-                           double from);
+                           double from, double guess);
 };
 
 struct granular_pressure {

@@ -141,10 +141,12 @@ static struct solve_stats newton(const struct granular_pressure *by,
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double unused;
     const double linear = nu[i] + by->mass[i] * q[i];
-    nu[i] =
-        q[i] > 0
-            ? min2(linear, m->solid_fraction(m->context, i, p[i] + q[i], nu[i]))
-            : linear;
+    /* where P' was raised to least_slope, `linear` may still be below P^-1 */
+    const bool beyond =
+        q[i] > 0 && m->pressure(m->context, i, linear, &unused) > p[i] + q[i];
+    nu[i] = beyond
+                ? m->solid_fraction(m->context, i, p[i] + q[i], nu[i], linear)
+                : linear;
     p[i] = m->pressure(m->context, i, nu[i], &unused);
   }
   mesh_touch(mesh, p);

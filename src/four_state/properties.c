@@ -61,6 +61,21 @@ static void set_mobility(struct four_state *sim) {
   field_fill_faces(mesh, sim->mobility_f);
 }
 
+/* Return the acceleration that a pressure gradient gives both leaves of a face
+ * which has more mass than they lend: the rest of its force, by mass. */
+static double thrust(const struct four_state *sim, int d, int32_t f,
+                     double gradient) {
+  const int32_t *node = sim->grid.mesh->face_node[f];
+  const double rho = sim->closure.param[LEE_HUANG_RHO_D];
+  const double mobility = sim->mobility_f->v[f];
+  double mass[2];
+  if (!(mobility > 0)) return 0;
+  lent(sim, d, f, mass);
+  const double rest = max2(1 - rho * mobility * (mass[0] + mass[1]), 0);
+  const double *nu = sim->nu->v;
+  return -rest * gradient / (rho * (nu[node[0]] + nu[node[1]]));
+}
+
 /* Fill what was set, and keep interpolated values from falling below 0; p is
  * interpolated by weight, since beside the surface leaves that are nearly empty
  * would get the pressure of those below. */
@@ -145,18 +160,19 @@ void four_state_viscosity(struct four_state *sim, double *const u[]) {
   field_fill_faces(mesh, sim->kappa_f);
 }
 
-void four_state_face_acceleration(const struct four_state *sim, const double *p,
+void four_state_face_acceleration(struct four_state *sim, const double *p,
                                   double *a_f) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int d = 0; d < DIM; d++) {
     const double g = sim->params->gravity[d];
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      a_f[f] = mesh->face_patch[f] >= 0
-                   ? 0
-                   : g - sim->mobility_f->v[f] * mesh_gradient(mesh, p, f);
+      const double gradient = mesh_gradient(mesh, p, f);
+      const bool wall = mesh->face_patch[f] >= 0;
+      a_f[f] = wall ? 0 : g - sim->mobility_f->v[f] * gradient;
+      sim->thrust_f->v[f] = wall ? 0 : thrust(sim, d, f, gradient);
     }
   }
-  mesh_fill_faces(mesh, 1, (double *const[]){a_f});
+  mesh_fill_faces(mesh, 2, (double *const[]){a_f, sim->thrust_f->v});
 }
 
 void four_state_acceleration(const struct four_state *sim, const double *a_f,
@@ -166,8 +182,9 @@ void four_state_acceleration(const struct four_state *sim, const double *a_f,
     const double *upper = sim->upper[d]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       const int32_t *face = mesh->cell_face[i];
-      a[d][i] =
-          (1 - upper[i]) * a_f[face[2 * d]] + upper[i] * a_f[face[2 * d + 1]];
+      const int32_t lo = face[2 * d], hi = face[2 * d + 1];
+      a[d][i] = (1 - upper[i]) * a_f[lo] + upper[i] * a_f[hi] +
+                sim->thrust_f->v[lo] + sim->thrust_f->v[hi];
     }
   }
 }

@@ -18,7 +18,7 @@
 #include "talus/shapes.h"
 
 /* Rounds that put columns in balance, and what is left then, of nu. */
-enum { ROUNDS = 60 };
+enum { ROUNDS = 20, NEWTON = 8 };
 static const double BALANCED = 1e-12;
 
 /* Solid fraction over the depth below the surface, every `spacing` m. */
@@ -157,7 +157,7 @@ static double settle_once(struct four_state *sim, int axis, double dt) {
     sim->u_f->v[f] = sim->mobility_f->v[f] > 0 ? dt * a_f[f] : 0;
   }
   struct granular_pressure by = four_state_material(sim, "settle");
-  by.tolerance = BALANCED;
+  by.tolerance = BALANCED, by.max_newton = NEWTON;
   granular_pressure_solve(&by, dt, sim->u_f->v, p, nu, sim->flux->v);
   scratch_give(&sim->scratch, "settle");
   for (int32_t i = 0; i < mesh->nleaves; i++) {

@@ -134,6 +134,7 @@ static void add_made(struct four_state *sim) {
   sim->name =
       add_output(sim, "state", "0 solid 1 quasi-static 2 dense 3 inertial");
   sim->mobility_f = add_face(sim, "mobility");
+  sim->thrust_f = add_face(sim, "thrust");
   sim->eta_f = add_face(sim, "face_viscosity");
   sim->kappa_f = add_face(sim, "face_bulk_viscosity");
   sim->shear_f = add_face(sim, "face_shear_rate");
@@ -162,6 +163,7 @@ struct four_state *four_state_new_on(const struct params *params,
 void four_state_destroy(struct four_state *sim) {
   if (!sim) return;
   grid_release(&sim->grid);
+  four_state_closure_release(&sim->closure);
   mem_free(sim);
 }
 

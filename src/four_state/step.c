@@ -54,7 +54,7 @@ enum { RETRIES = 8, PICARD = 2, MOST_NEWTON = 30 };
 #define MOST_GIVEN 0.95
 /* R of granular_pressure.h is bounded by this times solver.tolerance_pressure.
  */
-#define PRESSURE_FACTOR 1e-5
+#define PRESSURE_FACTOR 1e-4
 /* Slope of P where there is no pressure, Pa. */
 #define LEAST_SLOPE 1e-4
 /* Solid fractions below this count as this in the viscous equation. */
@@ -71,10 +71,10 @@ static double find_pressure(const void *context, int32_t i, double nu,
 }
 
 static double find_fraction(const void *context, int32_t i, double p,
-                            double from) {
+                            double from, double guess) {
   const struct four_state *sim = context;
   return four_state_solid_fraction(&sim->closure, p, sim->T->v[i],
-                                   max2(from, 0));
+                                   max2(from, 0), guess);
 }
 
 struct granular_pressure four_state_material(struct four_state *sim,
@@ -142,16 +142,15 @@ static void diffuse(struct four_state *sim, double dt, const double *mass,
 }
 
 /* Return what friction and viscosity have taken from the grains, J/m (3D: J):
- * rhs/mass is the velocity without, u with them. */
+ * their force, mass u* - rhs, times u*. What implicit steps lose besides,
+ * mass/2 |u* - rhs/mass|^2, counts as numerical. */
 static double viscous_loss(const struct four_state *sim, const double *mass,
                            double *const rhs[DIM], double *const u[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
   double sum = 0;
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      const double before = rhs[e][i] / mass[i], after = u[e][i];
-      sum += 0.5 * mass[i] * (before - after) * (before + after) *
-             mesh_volume(mesh, i);
+      sum += (rhs[e][i] - mass[i] * u[e][i]) * u[e][i] * mesh_volume(mesh, i);
     }
   }
   return mesh_sum(mesh, sum);

@@ -5,10 +5,16 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "talus/memory.h"
+
 static const double PI = 3.14159265358979323846;
 
 /* p_D goes on linearly from this far below nu_0. */
 static const double POLE_MARGIN = 1e-3;
+
+/* Pieces of the table: a hundred where p_D, a power of nu_0 - nu, is steepest.
+ */
+enum { PIECES = 1 << 16 };
 
 /* A function of nu with its derivative. */
 struct slope {
@@ -26,7 +32,9 @@ static struct kinetic kinetic_at(const double *param, double nu) {
   const double q = param[LEE_HUANG_G0_EXPONENT];
   const double nu_max = param[LEE_HUANG_NU_MAX];
   struct kinetic k;
-  k.g_0.value = (1 - 7. / 16 * nu) / pow(1 - nu / nu_max, q); /* eq. 14 */
+  const double room = 1 - nu / nu_max;
+  /* eq. 14 */
+  k.g_0.value = (1 - 7. / 16 * nu) / (q == 1 ? room : pow(room, q));
   const double rise = -7. / 16 / (1 - 7. / 16 * nu) + q / (nu_max - nu);
   k.g_0.slope = k.g_0.value * rise;
   k.contact.value = (1 + e) * nu * k.g_0.value;
@@ -119,18 +127,51 @@ const char *four_state_closure_init(struct four_state_closure *c,
   c->p_D[0] = p_D.value, c->p_D[1] = p_D.slope;
   c->p_K[0] = p_K.value, c->p_K[1] = p_K.slope;
   c->p_ES[0] = p_ES.value, c->p_ES[1] = p_ES.slope;
+  c->per_nu = PIECES / param[LEE_HUANG_NU_MAX];
+  c->table = mem_alloc(PIECES + 1, sizeof *c->table);
+  for (int k = 0; k <= PIECES; k++) {
+    const double nu = k / c->per_nu;
+    double unused;
+    const struct slope hot = hot_of(c, nu, &unused);
+    const struct slope rest = packing_of(c, nu);
+    c->table[k][0] = hot.value, c->table[k][1] = hot.slope;
+    c->table[k][2] = rest.value, c->table[k][3] = rest.slope;
+  }
   return NULL;
+}
+
+void four_state_closure_release(struct four_state_closure *c) {
+  mem_free(c->table);
+  c->table = NULL;
+}
+
+/* Give the cubic between two nodes whose values and slopes are v[0], v[1], in
+ * steps of 1/per. */
+static inline struct slope cubic(const double here[2], const double next[2],
+                                 double t, double per) {
+  const double rise = next[0] - here[0], m0 = here[1] / per, m1 = next[1] / per;
+  const double c2 = 3 * rise - 2 * m0 - m1, c3 = m0 + m1 - 2 * rise;
+  return (struct slope){here[0] + t * (m0 + t * (c2 + t * c3)),
+                        per * (m0 + t * (2 * c2 + 3 * t * c3))};
 }
 
 double four_state_pressure(const struct four_state_closure *c, double nu,
                            double T, double *slope) {
-  const struct slope p_ES = packing_of(c, nu);
-  struct slope hot = {0, 0};
-  double p_K;
-  if (T > 0) hot = hot_of(c, nu, &p_K);
-  const double rho_T = c->param[LEE_HUANG_RHO_D] * T;
+  const double at = nu * c->per_nu, rho_T = c->param[LEE_HUANG_RHO_D] * T;
+  struct slope hot = {0, 0}, p_ES = {0, 0};
+  if (at < PIECES) {
+    const int k = (int)at;
+    const double(*node)[4] = (const double(*)[4])(c->table + k);
+    if (T > 0) hot = cubic(node[0], node[1], at - k, c->per_nu);
+    if (nu > c->param[LEE_HUANG_NU_MIN])
+      p_ES = cubic(node[0] + 2, node[1] + 2, at - k, c->per_nu);
+  } else {
+    double p_K;
+    hot = hot_of(c, nu, &p_K);
+    p_ES = packing_of(c, nu);
+  }
   if (slope != NULL) *slope = p_ES.slope + rho_T * hot.slope;
-  return p_ES.value + rho_T * hot.value;
+  return fmax(p_ES.value, 0) + rho_T * hot.value;
 }
 
 double four_state_kinetic_pressure(const struct four_state_closure *c,
@@ -151,17 +192,16 @@ double four_state_contact_pressure(const struct four_state_closure *c,
 /* Find where p = target between low, where p is less, and infinity: Newton's
  * method, halved towards the bracket where it would leave it. */
 static double invert(const struct four_state_closure *c, double target,
-                     double T, double low) {
+                     double T, double low, double guess) {
   enum { MOST = 200 };
-  double high = INFINITY, nu = fmax(low, c->param[LEE_HUANG_NU_MIN] * 1.001);
-  if (low > nu) nu = low;
+  double high = INFINITY, nu = fmax(low, guess);
   for (int k = 0; k < MOST; k++) {
     double slope;
     const double miss = four_state_pressure(c, nu, T, &slope) - target;
     if (miss > 0) high = nu;
     if (miss < 0) low = nu;
     double next = slope > 0 ? nu - miss / slope : INFINITY;
-    if (fabs(next - nu) <= 1e-15 * nu || miss == 0) return nu;
+    if (fabs(next - nu) <= 1e-14 * nu || miss == 0) return next;
     if (!(next > low && next < high))
       next = isinf(high) ? 2 * nu : 0.5 * (low + high);
     nu = next;
@@ -170,12 +210,13 @@ static double invert(const struct four_state_closure *c, double target,
 }
 
 double four_state_solid_fraction(const struct four_state_closure *c, double p,
-                                 double T, double from) {
-  return invert(c, p, T, from);
+                                 double T, double from, double guess) {
+  return invert(c, p, T, from, guess);
 }
 
 double four_state_packed(const struct four_state_closure *c, double p) {
-  return p > 0 ? invert(c, p, 0, c->param[LEE_HUANG_NU_MIN])
+  return p > 0 ? invert(c, p, 0, c->param[LEE_HUANG_NU_MIN],
+                        c->param[LEE_HUANG_NU_0])
                : c->param[LEE_HUANG_NU_MIN];
 }
 

@@ -39,7 +39,7 @@ START_TEST(a_layer_in_balance_rests) {
   double z[] = {-1, top[_i % 2]};
   struct four_state_keys keys = four_state_defaults();
   struct params p = with_levels(beads_params(&keys, LEVEL), _i / 2);
-  p.tolerance_pressure = 1e-7, p.tolerance_viscous = 1e-12;
+  p.tolerance_pressure = 1e-8, p.tolerance_viscous = 1e-12;
   p.shape = (struct function){slab, z};
   struct four_state *sim = beads_new(&p);
   const bool done = beads_run(sim, 1, 50);

@@ -6,7 +6,8 @@
 
 Suite *four_state_closure_suite(void);
 
-/* Return the closures of table I, or with one key changed; knudsen: k. */
+/* Return the closures of table I, or with one key changed; knudsen: k. The
+ * process ends with each test, and with it what they own. */
 static struct four_state_closure closures(const char *key, double value,
                                           double knudsen) {
   struct four_state_closure c;
@@ -137,7 +138,7 @@ START_TEST(solid_fraction_inverts_pressure) {
   for (double T = 0; T<2; T = T> 0 ? 100 * T : 1e-10) {
     for (double nu = T > 0 ? 0.01 : 0.5701; nu < 0.68; nu += 0.0013) {
       const double p = four_state_pressure(&c, nu, T, NULL);
-      const double back = four_state_solid_fraction(&c, p, T, 0);
+      const double back = four_state_solid_fraction(&c, p, T, 0, 0.6);
       ck_assert_double_eq_tol(back, nu, 1e-9);
       EQUAL(four_state_pressure(&c, back, T, NULL), p, 1e-10);
     }

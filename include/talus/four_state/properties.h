@@ -11,7 +11,9 @@
  * leaf of the surface included. With the same parts
  *   u_f = (s_0 nu_0 u_0 + (1 - s_1) nu_1 u_1)/(s_0 nu_0 + (1 - s_1) nu_1)
  *   a   = (1 - s) a_lower + s a_upper,   a_f = g - grad p/(rho_d M)
- * go from leaves to faces and back. Walls do not accelerate: a_f = 0.
+ * go from leaves to faces and back. Walls do not accelerate: a_f = 0. A face at
+ * the surface may have more mass than its leaves lend; they share the rest of
+ * the force of its pressure by their mass, so that none is lost.
  */
 #ifndef TALUS_FOUR_STATE_PROPERTIES_H
 #define TALUS_FOUR_STATE_PROPERTIES_H
@@ -27,10 +29,10 @@ void four_state_properties(struct four_state *sim);
 void four_state_viscosity(struct four_state *sim, double *const u[]);
 /* Set shear_f, on all faces. u filled. Collective. */
 void four_state_shear(struct four_state *sim, double *const u[]);
-/* Set a_f [nfaces_all] of a pressure p, filled. Collective. */
-void four_state_face_acceleration(const struct four_state *sim, const double *p,
+/* Set a_f [nfaces_all] and thrust_f of a pressure p, filled. Collective. */
+void four_state_face_acceleration(struct four_state *sim, const double *p,
                                   double *a_f);
-/* Set a[d] [nleaves] of a_f. */
+/* Set a[d] [nleaves] of a_f and thrust_f. */
 void four_state_acceleration(const struct four_state *sim, const double *a_f,
                              double *const a[]);
 /* Set u_f [nfaces_all] to the mean of u, filled, and 0 on walls; faces of other

@@ -46,6 +46,7 @@ struct four_state {
   struct field *upper[DIM]; /* part of the mass of a leaf that counts for its
                                upper face along an axis; properties.h */
   struct field *mobility_f; /* 1/(rho_d M) */
+  struct field *thrust_f;   /* acceleration that surfaces add, m/s^2 */
   struct field *eta_f, *kappa_f; /* viscosities of faces, Pa s */
   struct field *shear_f;         /* shear rate at faces, 1/s */
   struct field *u_f, *flux;      /* face velocity, and nu_f times it, m/s */
