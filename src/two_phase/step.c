@@ -76,6 +76,7 @@
 #include "talus/two_phase/pressure_level.h"
 #include "talus/two_phase/properties.h"
 #include "talus/two_phase/state.h"
+#include "talus/two_phase/still.h"
 #include "talus/two_phase/time_step.h"
 #include "talus/two_phase/viscous_work.h"
 #include "talus/viscous.h"
@@ -258,19 +259,22 @@ static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
 
 /* Take scratch for the acceleration g that the predictor of Crank-Nicolson
  * needs to be of second order in time, and fill it: pressure and gravity, with
- * what viscosity and walls did in the last step. advect_momentum gives it back.
- */
+ * what viscosity and walls did in the last step; in backward Euler that only to
+ * grains at rest (still.h). advect_momentum gives it back. */
 static void predictor_acceleration(struct two_phase *sim, double *g[DIM]) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[DIM];
   const double *drag = sim->drag ? sim->drag->v : NULL;
+  const double *still = sim->params->theta < 1 ? NULL : sim->yield.still->v;
   scratch_take(&sim->scratch, FIELD_CELL, "predictor", DIM, g);
   for (int e = 0; e < DIM; e++) {
     bc[e] = neumann;
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       const double u = sim->u_old[e]->v[i];
-      g[e][i] = sim->g[e]->v[i] + sim->viscous_g[e]->v[i] -
-                (drag ? drag[i] * u / sim->rho->v[i] : 0);
+      g[e][i] = sim->g[e]->v[i];
+      if (still && still[i] == 0) continue;
+      g[e][i] += sim->viscous_g[e]->v[i];
+      if (drag) g[e][i] -= drag[i] * u / sim->rho->v[i];
     }
   }
   mesh_fill(sim->grid.mesh, DIM, g, bc, false);
@@ -302,7 +306,7 @@ static void advect_momentum(struct two_phase *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   sim->u_half->v = scratch_take_one(&sim->scratch, FIELD_FACE, "u_half");
   if (sim->params->advection == ADVECTION_OFF) return;
-  const bool viscous = sim->params->theta < 1;
+  const bool viscous = sim->params->theta < 1 || sim->exact;
   double *u[DIM], *g[DIM], *out[DIM];
   field_arrays(sim->u_old, u), field_arrays(sim->u, out);
   if (viscous) {
@@ -572,6 +576,15 @@ static void carry_with_grains(struct two_phase *sim, double dt) {
   end_projection(sim);
 }
 
+static void add_acceleration(struct two_phase *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int e = 0; e < DIM; e++) {
+    double *u = sim->u[e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) u[i] += dt * sim->g[e]->v[i];
+    mesh_touch(mesh, u);
+  }
+}
+
 /* Find p, u_f and u at the end of the step; k counts repetitions. */
 static void project(struct two_phase *sim, double dt, int k) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -583,13 +596,15 @@ static void project(struct two_phase *sim, double dt, int k) {
   projection_face_velocity(&projection, dt, u, sim->u_f->v);
   sim->pressure = projection_project(&projection, dt, sim->u_f->v, sim->p->v);
   pressure_level_set(sim);
+  if (sim->exact) still_before(sim, dt);
   set_acceleration(sim, &projection, g);
   end_projection(sim);
-  for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * g[e][i];
-    mesh_touch(mesh, u[e]);
+  if (sim->exact) {
+    still_after(sim, dt);
+    carry_with_grains(sim, dt);
+  } else {
+    add_acceleration(sim, dt);
   }
-  if (sim->exact) carry_with_grains(sim, dt);
   measure_repetition(sim, k, last);
 }
 
@@ -673,7 +688,9 @@ static void advance_state(struct two_phase *sim, double dt, double rate) {
   fractions_advance(sim, dt_c, rate);
   percolation_advance(sim, dt_c), lap(sim, STAGE_FRACTION);
   update_density(sim);
-  update_acceleration(sim), lap(sim, STAGE_DENSITY);
+  update_acceleration(sim);
+  if (sim->exact) still_find(sim, dt), still_guess(sim);
+  lap(sim, STAGE_DENSITY);
   update_viscosity(sim, sim->u_old), lap(sim, STAGE_RHEOLOGY);
   advect_momentum(sim, dt), lap(sim, STAGE_ADVECTION);
   double *advected[DIM];
@@ -784,6 +801,7 @@ void step_acceleration(struct two_phase *sim, double *const g[DIM]) {
 
 void step_start(struct two_phase *sim) {
   sim->planes_hold = false;
+  if (sim->exact) still_forget(sim);
   update_density(sim);
   const double divergence = clean_divergence(sim->grid.mesh, sim->u_f->v);
   if (divergence > SOLENOIDAL * time_step_rate(sim)) {

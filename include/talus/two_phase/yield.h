@@ -53,9 +53,11 @@ struct yield {
   struct field *strain[STRAIN_ROWS], *trend[STRAIN_ROWS]; /* D, 1/s, and its
                                   change, 1/s^2; kept */
   struct field *tau_y;                                    /* Pa; kept */
-  struct field *shear; /* sqrt(2 D:D) of u^n on faces, 1/s */
-  struct field *state; /* yield_state of snapshots, on demand */
-  double gamma_r;      /* 1/s */
+  struct field *g_change[DIM]; /* of g from step to step, m/s^2; kept */
+  struct field *still;         /* 1 in leaves at rest, else 0 (still.h) */
+  struct field *shear;         /* sqrt(2 D:D) of u^n on faces, 1/s */
+  struct field *state;         /* yield_state of snapshots, on demand */
+  double gamma_r;              /* 1/s */
 };
 
 /* Set eta_f, tau_y and gamma_r from the velocity, which is filled, and p. */
