@@ -137,16 +137,18 @@ static double largest_yield_stress(const struct two_phase *sim) {
   return mesh_max(sim->grid.mesh, most);
 }
 
-/* Let eta_f and tau_y of the grains be those of grains and gas. On a dry face
- * gas is in series with the grains on its line, a part theta; work: theta. */
-static void add_gas(struct two_phase *sim, const double *shear,
-                    const double *wet, const double *p_f, double *theta) {
+/* Let eta_f and tau_y of the grains be those of grains and gas. On a face that
+ * is dry, or wet with gas on its line, both are in series there, grains on a
+ * part theta; changes wet and theta. */
+static void add_gas(struct two_phase *sim, const double *shear, double *wet,
+                    const double *p_f, double *theta) {
   const struct params *params = sim->params;
   const struct rheology *const phase[2] = {&params->grains.rheology,
                                            &params->gas.rheology};
   double *eta = sim->eta_f->v, *tau_y = sim->yield.tau_y->v;
   double *dry = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   for (int32_t f = 0; f < sim->grid.mesh->nfaces; f++) {
+    if (wet[f] == 1 && theta[f] < 1 - PARAMS_GAS) wet[f] = 0;
     if (wet[f] > 0) theta[f] = 0;
     dry[f] = eta[f];
   }

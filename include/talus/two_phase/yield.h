@@ -28,10 +28,11 @@
  * planes of its leaves):
  *   eta = a eta_1 + (1 - a) eta_2,  tau_y = a (tau_y1(p_f) + cohesion).
  * On a dry face, a = 0, eta_2 is that of the gas in series with the grains on
- * its line (properties.h). Grains touch what a film of gas keeps them from: in
- * a leaf with a part c' < 0.1 of gas a is at least 1 - 10 c' (of both leaves).
- * The face that carries a cut leaf bears at least the weight of its grains,
- *   p_f >= c rho_1 |g_d| h/a.
+ * its line (properties.h); so it is on a wet face with gas on its
+ * line, beyond which a leaf moves with the gas. Grains touch what a film
+ * of gas keeps them from: in a leaf with a part c' < 0.1 of gas a is at least 1
+ * - 10 c' (of both leaves). The face that carries a cut leaf bears at least the
+ * weight of its grains, p_f >= c rho_1 |g_d| h/a.
  *
  * u_f, which carries c, is not that of the projection: it would leave dt (a_f -
  * mean g_c), which does not vanish at rest. It is the solenoidal part of the
