@@ -36,7 +36,9 @@
 -- Expect. The heap comes to rest at about 6 sqrt(h_i/g) with its front at 2.75
 -- r_i, at 2.25 r_i if r_i = 0.02 m: fewer grains, larger I, more friction.
 --
--- Try. r_i=0.02; a=5; dimension=3 cells=16; mu_s=0.5.
+-- Try. The figures of the paper, with its numbers beside ours:
+--   tools/figure.py valette_2019 30 31 32 33
+-- r_i=0.02; a=5; strip=3; dimension=3 cells=16; mu_s=0.5.
 
 local a = param("a", 1, "aspect ratio h_i/r_i of the column")
 local dimension = param("dimension", 2, "2: axisymmetric, 3: a quarter")

@@ -12,7 +12,8 @@
  * converges on an outlet over a few widths (docs/notes/openings.md).
  *
  * Faces. A face that an inflow shares with others belongs to the inflow. With
- * part_j the part of the area that boundary j covers, the velocity of the face
+ * part_j the part of the area that boundary j covers (of the ring, in
+ * axisymmetric coordinates), the velocity of the face
  * is sum_j part_j u_j, where u_j = 0 for walls and outflows, and the fraction
  * carried in, over the inflows j, sum_j part_j u_j.n c_j / sum_j part_j u_j.n;
  * so what flows in is that of the function, W V t, on any grid. Other faces

@@ -47,6 +47,31 @@ static double inward(const struct params *params, int boundary, int side) {
   return max2(0, (side & 1 ? -1 : 1) * of->velocity[side / 2]);
 }
 
+/* Turn parts of the width of a face along r, around x, into parts of the ring
+ * that it sweeps: exactly where one boundary ends and another begins, else by
+ * points. */
+static void weigh_rings(const struct params *params, int side,
+                        const double x[3], double h, double part[]) {
+  enum { POINTS = 4096 };
+  const double slant = 0.5 * h / x[0];
+  double at[3] = {x[0] - 0.5 * h * (1 - 1e-6), x[1], x[2]};
+  const int first = params->boundary_select(params->boundary_context, side, at);
+  at[0] = x[0] + 0.5 * h * (1 - 1e-6);
+  const int last = params->boundary_select(params->boundary_context, side, at);
+  if (first != last && part[first] + part[last] > 1 - 1e-9) {
+    part[first] *= 1 - slant * (1 - part[first]);
+    part[last] = 1 - part[first];
+    return;
+  }
+  for (int b = 0; b < SIDE_MAP_MOST; b++) part[b] = 0;
+  for (int k = 0; k < POINTS; k++) {
+    const double away = (k + 0.5) / POINTS - 0.5;
+    at[0] = x[0] + away * h;
+    const int b = params->boundary_select(params->boundary_context, side, at);
+    part[b] += (1 + 2 * slant * away) / POINTS;
+  }
+}
+
 /* Share a face among patches, the largest parts first. */
 static void share_face(const struct params *params, int side,
                        const double part[], struct patch_shares *shares) {
@@ -81,6 +106,9 @@ int openings_patch(void *context, int side, const double x[3], double h,
     const bool alone = side_map_parts(map, t, h, part) >= 0;
     boundary = side_map_owner(map, t, h, inflows);
     if (!alone && inflows >> boundary & 1) {
+      if (side > 1 && params_axisymmetric(params)) {
+        weigh_rings(params, side, x, h, part);
+      }
       share_face(params, side, part, shares);
     }
   } else if (params->boundary_select) {

@@ -128,6 +128,45 @@ START_TEST(what_flows_in_is_speed_times_area) {
 }
 END_TEST
 
+/* Return the inflow through a ring in the top, on a uniform coarse grid. */
+static double ring_inflow(const struct params *params) {
+  struct forest_layout layout;
+  grid_layout(params, &layout);
+  struct two_phase *sim =
+      two_phase_new_on(params, forest_new(MPI_COMM_WORLD, &layout, COARSE + 1));
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *u = sim->u[1]->v;
+  double sum = 0;
+  field_fill_many(mesh, DIM, sim->u);
+  for (int32_t f = mesh->face_begin[1]; f < mesh->nfaces; f++) {
+    const int32_t *node = mesh->face_node[f];
+    const int patch = mesh->face_patch[f];
+    if (patch < FIRST || !sim->grid.closed[patch]) continue;
+    sum -= 0.5 * (u[node[0]] + u[node[1]]) * mesh_face_area(mesh, f);
+  }
+  sum = mesh_sum(mesh, sum);
+  two_phase_destroy(sim);
+  return sum;
+}
+
+/* A face that two patches share is divided by the areas of their rings, be one
+ * of them in its middle. */
+START_TEST(a_ring_takes_in_what_its_area_does) {
+  const double low = kEnds[_i][0], high = kEnds[_i][1];
+  struct opening opening = {low, high, NULL};
+  if (DIM == 3) return;
+  struct params params =
+      opening_params(&opening, BOUNDARY_INFLOW, BOUNDARY_OUTFLOW);
+  params.coordinates = COORDINATES_AXISYMMETRIC;
+  follow(&params);
+  const double flux = ring_inflow(&params);
+  side_map_destroy(opening.map);
+  const double want = SPEED * acos(-1) * (high * high - low * low);
+  /* 1/4096 of a face of 1/8, in whose middle the last is */
+  ck_assert_double_eq_tol(flux / want, 1, high - low < 0.01 ? 0.03 : 2e-4);
+}
+END_TEST
+
 /* Steps of a whole run; what is in its way leaves through another side. */
 START_TEST(volume_is_that_of_the_jet) {
   struct opening opening = {0, 0.27, NULL};
@@ -290,6 +329,7 @@ Suite *openings_suite(void) {
   Suite *suite = suite_create("openings");
   TCase *tc = tcase_create("openings");
   tcase_add_loop_test(tc, what_flows_in_is_speed_times_area, 0, NENDS);
+  tcase_add_loop_test(tc, a_ring_takes_in_what_its_area_does, 0, NENDS);
   tcase_add_test(tc, volume_is_that_of_the_jet);
   tcase_add_test(tc, two_inflows_share_a_face);
   tcase_add_test(tc, narrow_outlet_is_on_the_finest_level);

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures in two dimensions of L. Valette et al., Sensitivity to the rheology
+"""Figures of L. Valette et al., Sensitivity to the rheology
 and geometry of granular collapses by using the mu(I) rheology, Comput. Fluids
 191 (2019). Case: examples/sensitivity.lua, with the paper's floor, on which
-grains do not slip, and its least viscosity, 1e-4 rho sqrt(g h_i^3)."""
+grains do not slip, and its least viscosity, 1e-4 rho sqrt(g h_i^3); cylinders
+are in cylinders.py."""
 import math
 
 from power_law import fit_one, fit_two
 from sweep import draw_law, set_log_axis
 import plot
 import run_data
+from papers import cylinders
 from papers.study import Row, around, make_panels, shades, within
 import matplotlib.pyplot as plt
 import numpy as np
@@ -441,4 +443,4 @@ FIGURES = {
     "26": ("shear rate, a = 10", shear_maps(TALL, (1, 2, 3, 5))),
     "27": ("reduced fronts, a = 10", master_curves("mu_s", MU_S)),
     "28": ("reduced fronts, a = 10", master_curves("delta_mu", DELTA_MU)),
-}
+} | cylinders.FIGURES
