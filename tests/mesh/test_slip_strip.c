@@ -4,7 +4,9 @@
 #include <check.h>
 
 #include "sim.h"
+#include "talus/hierarchy.h"
 #include "talus/openings.h"
+#include "talus/viscous.h"
 
 enum { UP = DIM - 1, FLOOR = 2 * UP, SMOOTH = 6 };
 
@@ -88,6 +90,48 @@ START_TEST(the_strip_follows_the_grains) {
 }
 END_TEST
 
+/* Solve the viscous equation for any right hand side and put u into `out`. */
+static void solve(struct two_phase *sim, struct hierarchy *hierarchy,
+                  double *out) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct viscosity viscosity = {.eta_f = sim->eta_f->v};
+  const struct bc *bc[DIM];
+  double *u[DIM], *rhs[DIM];
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, rhs);
+  field_arrays(sim->u, u);
+  srand(3 + (unsigned)mesh->rank);
+  for (int d = 0; d < DIM; d++) {
+    bc[d] = sim->u[d]->bc;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      u[d][i] = 0, rhs[d][i] = rand() / (double)RAND_MAX;
+    }
+  }
+  viscous_solve(mesh, hierarchy, sim->rho->v, &viscosity, 0.1, rhs, bc, 1e-3, 3,
+                u);
+  memcpy(out, u[0], (size_t)mesh->nleaves * sizeof *out);
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* A hierarchy that has followed the floor is, to the last bit, the one that is
+ * made anew on it. */
+START_TEST(the_hierarchy_follows_the_floor) {
+  struct params p = strip_params(0.1);
+  struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  struct hierarchy *anew = hierarchy_new(mesh);
+  double *u[2];
+  for (int k = 0; k < 2; k++) {
+    u[k] = MEM_NEW(double, mesh->nleaves);
+    solve(sim, k ? anew : sim->grid.hierarchy, u[k]);
+  }
+  const bool same = memcmp(u[0], u[1], (size_t)mesh->nleaves * sizeof **u) == 0;
+  for (int k = 0; k < 2; k++) mem_free(u[k]);
+  hierarchy_destroy(anew);
+  two_phase_destroy(sim);
+  ck_assert(all_ranks(same));
+}
+END_TEST
+
 /* Gas that is pushed over a floor slips in the strip and sticks beyond; the
  * solver still converges, on any number of ranks. */
 START_TEST(gas_slips_in_the_strip) {
@@ -126,6 +170,7 @@ Suite *slip_strip_suite(void) {
   TCase *tcase = tcase_create("floor");
   tcase_add_loop_test(tcase, the_strip_lies_ahead_of_the_grains, 0, 2);
   tcase_add_test(tcase, the_strip_follows_the_grains);
+  tcase_add_test(tcase, the_hierarchy_follows_the_floor);
   tcase_add_test(tcase, gas_slips_in_the_strip);
   suite_add_tcase(suite, tcase);
   return suite;
