@@ -38,7 +38,7 @@
 -- core; level 8: a quarter of a minute.
 --
 -- Expect. Once they have set off, at about t = 2, grains leave at a constant
--- rate, 0.712 from the whole silo for W = 0.31325 (level 8: 0.731), whatever
+-- rate, 0.714 from the whole silo for W = 0.31325 (level 8: 0.731), whatever
 -- the height above: Q = 1.49 sqrt(g) (2 W + b)^(3/2), where b, half a cell, is
 -- an error at the edge of the outlet. The pressure is low above the outlet, and
 -- the corners beside it do not move.

@@ -267,6 +267,27 @@ static const struct rheology_model *find_closure(const char *name) {
   return rheology_find(strcmp(name, "four_state") == 0 ? "lee_huang" : name);
 }
 
+/* Refuse keys that the regularisation ignores. */
+static void check_regularisation(const struct rheology *rheology) {
+  struct rheology plain;
+  rheology_init(&plain, rheology->model);
+  const enum rheology_regularisation is = rheology->regularisation;
+  const char *name = rheology_regularisation_name((int)is);
+  const bool exact = is == RHEOLOGY_EXACT;
+  if (exact && !rheology_yields(rheology))
+    USER_ERROR("regularisation=exact: %s holds no stress at rest",
+               rheology->model->name);
+  if (exact && rheology->eta_max != plain.eta_max)
+    USER_ERROR(
+        "eta_max has no meaning with regularisation=exact, which caps "
+        "nothing: say regularisation=clip");
+  if ((exact || is == RHEOLOGY_CLIP) && rheology->gamma_r != plain.gamma_r)
+    USER_ERROR(
+        "gamma_r has no meaning with regularisation=%s: say "
+        "regularisation=papanastasiou or bercovier_engelman",
+        name);
+}
+
 int command_rheology(int argc, char *argv[]) {
   if (argc == 0) return list_closures();
   const struct rheology_model *model = find_closure(argv[0]);
@@ -287,6 +308,7 @@ int command_rheology(int argc, char *argv[]) {
   if (missing != NULL)
     USER_ERROR("%s needs %s=value (%s, %s)", model->name, missing->name,
                missing->help, missing->unit);
+  check_regularisation(&rheology);
   const char *wrong = rheology_prepare(&rheology);
   if (wrong != NULL) USER_ERROR("%s: %s", model->name, wrong);
   print_curve(&rheology, pressure, csv);

@@ -22,6 +22,12 @@ says 'well posed for 0 < I < 16.992' mu_i_well_posed
 says 'I_tran = 1.171.*mu_tran = 0.542.*I_max = 2.105' lee_huang p=1000
 # Fig. 1 of lee_huang_chiew_2015; the paper's table II has I_tran = 1.492.
 says 'I_tran = 1.466.*mu_tran = 0.592' four_state e_eff=0.46 eta_S=0.42 d=0.0005
+says 'eta_max has no meaning with regularisation=exact' \
+  mu_i d=0.001 regularisation=exact eta_max=10
+says 'gamma_r has no meaning with regularisation=clip' mu_i d=0.001 gamma_r=2
+says 'exact: mu_i_well_posed holds no stress at rest' \
+  mu_i_well_posed d=0.001 regularisation=exact
+says 'well posed' mu_i d=0.001 regularisation=exact
 says 'user: viscosity = .*only a case file' user
 says 'lee_huang: nu_min < nu_0 < nu_max' lee_huang nu_0=0.64
 says 'closure muI; did you mean mu_i' muI
