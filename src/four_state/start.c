@@ -9,7 +9,6 @@
 #include "talus/four_state/properties.h"
 #include "talus/four_state/state.h"
 #include "talus/four_state/step.h"
-#include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
 #include "talus/model.h"
@@ -20,6 +19,9 @@
 /* Rounds that put columns in balance, and what is left then, of nu. */
 enum { ROUNDS = 20, NEWTON = 8 };
 static const double BALANCED = 1e-12;
+/* A round counts if mass is right to ROUGHLY and nu changes by no more than
+ * MOST_CHANGE. */
+static const double ROUGHLY = 1e-9, MOST_CHANGE = 0.01;
 
 /* Solid fraction over the depth below the surface, every `spacing` m. */
 struct depths {
@@ -111,30 +113,35 @@ static void adapt_to_state(struct four_state *sim, const struct depths *depths,
   }
 }
 
-/* Keep surface leaves, which carry nothing, at the loosest packing. */
-static void loosen_surface(struct four_state *sim) {
+/* Keep leaves with nothing above them, which carry nothing, at the loosest
+ * packing. */
+static void loosen_surface(struct four_state *sim, int axis) {
   const struct mesh *mesh = sim->grid.mesh;
   const double nu_min = sim->closure.param[LEE_HUANG_NU_MIN];
+  const int above = 2 * axis + (sim->params->gravity[axis] > 0 ? 0 : 1);
   field_fill(mesh, sim->nu);
   double *nu = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   memcpy(nu, sim->nu->v, (size_t)mesh->ncells * sizeof *nu);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    for (int s = 0; s < NFACE; s++) {
-      if (nu[mesh->stencil[i][stencil_face(s)]] < 0.1 * nu_min)
-        sim->nu->v[i] = min2(sim->nu->v[i], nu_min);
-    }
+    if (nu[mesh->stencil[i][stencil_face(above)]] < 0.1 * nu_min)
+      sim->nu->v[i] = min2(sim->nu->v[i], nu_min);
   }
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Let grains move along the vertical axis only, and not into the vacuum. */
+/* Let grains move along the vertical axis only, not into the vacuum, and only
+ * where those below touch each other: leaves that the side of a shape cuts are
+ * loose all the way down, and would fall. */
 static void hold_columns(struct four_state *sim, int axis) {
   const struct mesh *mesh = sim->grid.mesh;
   const double none = sim->keys->nu_vacuum;
+  const double touching = sim->closure.param[LEE_HUANG_NU_MIN] * (1 - 1e-6);
+  const int below = sim->params->gravity[axis] > 0 ? 1 : 0;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
-      if (d != axis || min2(sim->nu->v[node[0]], sim->nu->v[node[1]]) < none)
+      if (d != axis || sim->nu->v[node[below]] < touching ||
+          sim->nu->v[node[1 - below]] < none)
         sim->mobility_f->v[f] = 0;
     }
   }
@@ -142,7 +149,8 @@ static void hold_columns(struct four_state *sim, int axis) {
 }
 
 /* Put columns in the balance that the scheme itself has: grains fall from rest
- * over dt again and again, until none does. */
+ * over dt. Returns the largest change of nu; the state stays as it is if that
+ * is too large to be trusted. */
 static double settle_once(struct four_state *sim, int axis, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   double most = 0;
@@ -158,26 +166,29 @@ static double settle_once(struct four_state *sim, int axis, double dt) {
   }
   struct granular_pressure by = four_state_material(sim, "settle");
   by.tolerance = BALANCED, by.max_newton = NEWTON;
-  granular_pressure_solve(&by, dt, sim->u_f->v, p, nu, sim->flux->v);
+  const struct granular_stats stats =
+      granular_pressure_solve(&by, dt, sim->u_f->v, p, nu, sim->flux->v);
   scratch_give(&sim->scratch, "settle");
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
+  if (!(stats.residual <= ROUGHLY)) most = INFINITY;
+  for (int32_t i = 0; i < mesh->nleaves; i++)
     most = max2(most, fabs(nu[i] - sim->nu->v[i]));
-    sim->nu->v[i] = nu[i];
-  }
+  most = mesh_max(mesh, most);
+  if (most <= MOST_CHANGE)
+    memcpy(sim->nu->v, nu, (size_t)mesh->nleaves * sizeof *nu);
   mesh_touch(mesh, sim->nu->v);
   scratch_give(&sim->scratch, __func__);
-  return mesh_max(mesh, most);
+  return most;
 }
 
 static void settle(struct four_state *sim, int axis) {
   const struct params *params = sim->params;
   const double g = fabs(params->gravity[axis]);
-  const double dt = 0.1 * sqrt(params->size / g);
-  double change = 1;
-  loosen_surface(sim);
-  for (int k = 0; k < ROUNDS && change > BALANCED; k++)
+  double dt = 0.1 * sqrt(params->size / g), change = 1;
+  loosen_surface(sim, axis);
+  for (int k = 0; k < ROUNDS && change > BALANCED; k++) {
     change = settle_once(sim, axis, dt);
-  log_info("grains begin in balance, to %.2g of their solid fraction", change);
+    if (change > MOST_CHANGE) dt *= 0.25;
+  }
 }
 
 static void check_boundaries(const struct params *params) {
