@@ -67,6 +67,15 @@ double four_state_energy(const struct four_state *sim) {
          four_state_fluctuating(sim);
 }
 
+struct four_state_store four_state_store(const struct four_state *sim) {
+  double sum[NSUMS] = {0};
+  sum_leaves(sim, sum);
+  return (struct four_state_store){
+      .mass = sim->closure.param[LEE_HUANG_RHO_D] * sum[VOLUME],
+      .kinetic = sum[KINETIC],
+      .other = sum[ELASTIC] + four_state_fluctuating(sim)};
+}
+
 /* Return how far the contour lies from the centre of a leaf inside it along
  * axis d, on its upper or lower side, in edges; at most one. */
 static double reach(const struct four_state *sim, int32_t i, int side) {

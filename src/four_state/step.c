@@ -37,6 +37,7 @@
 #include <string.h>
 
 #include "talus/error.h"
+#include "talus/four_state/measure.h"
 #include "talus/four_state/properties.h"
 #include "talus/four_state/state.h"
 #include "talus/four_state/temperature.h"
@@ -55,6 +56,8 @@ enum { RETRIES = 8, PICARD = 2, MOST_NEWTON = 30 };
 /* R of granular_pressure.h is bounded by this times solver.tolerance_pressure.
  */
 #define PRESSURE_FACTOR 1e-4
+/* Grains may have this times the kinetic energy that is accounted for. */
+#define BURST 4
 /* Slope of P where there is no pressure, Pa. */
 #define LEAST_SLOPE 1e-4
 /* Solid fractions below this count as this in the viscous equation. */
@@ -332,8 +335,34 @@ static bool is_solved(const struct solve_stats *stats, double tolerance) {
          stats->residual_after <= max2(STALL_SLACK * tolerance, STALL_FLOOR);
 }
 
+/* Do walls or a given flow drive the grains? */
+static bool is_driven(const struct four_state *sim) {
+  bool driven = false;
+  for (int k = 0; k < MESH_MAX_PATCHES; k++) {
+    for (int d = 0; d < DIM; d++) driven |= sim->u[d]->bc[k].value != 0;
+  }
+  return driven;
+}
+
+/* Return how much kinetic energy there is for each J that gravity over dt and
+ * what grains had stored may have made. Above 1 they burst: p_D has a pole at
+ * nu_0, and grains packed beyond get a pressure from the first fluctuation that
+ * no energy stands behind. */
+static double burst(const struct four_state *sim, double dt,
+                    const struct four_state_store *before) {
+  double g2 = 0;
+  if (is_driven(sim)) return 0;
+  for (int d = 0; d < DIM; d++)
+    g2 += sim->params->gravity[d] * sim->params->gravity[d];
+  const double fall = sqrt(0.5 * before->mass * g2) * dt;
+  const double speed = sqrt(before->kinetic) + fall;
+  const double most = BURST * (speed * speed + before->other) + 1e-300;
+  return four_state_store(sim).kinetic / most;
+}
+
 /* Say what is wrong with the step that was taken; returns whether it is. */
-static bool has_failed(const struct four_state *sim, double given) {
+static bool has_failed(const struct four_state *sim, double given,
+                       double burst) {
   const long long step = (long long)sim->model.step;
   const char *wild = fields_not_finite(&sim->grid.fields, sim->grid.mesh);
   const double tolerance = sim->params->tolerance_viscous * sim->scale;
@@ -351,6 +380,13 @@ static bool has_failed(const struct four_state *sim, double given) {
         step, sim->viscous.iterations, sim->viscous.residual_after, tolerance);
   } else if (given > MOST_GIVEN) {
     log_info("step %lld: a leaf gives away %.3g of its grains", step, given);
+  } else if (!(burst <= 1)) {
+    log_info(
+        "step %lld: grains burst, with %.3g times the energy that gravity and "
+        "elasticity may have given them: those above grains.nu_0 have a "
+        "pressure without bounds, so start from balance with a larger grains.K "
+        "or a smaller grains.chi, or from a smaller grains.nu_start",
+        step, burst);
   } else {
     return false;
   }
@@ -361,11 +397,12 @@ static bool has_failed(const struct four_state *sim, double given) {
  */
 static double find_step(struct four_state *sim, double dt_max) {
   const double dissipated = sim->dissipated;
+  const struct four_state_store before = four_state_store(sim);
   fields_save(&sim->grid.fields, sim->grid.mesh);
   for (int attempt = 0; attempt <= RETRIES; attempt++) {
     const double dt = four_state_time_step(sim, dt_max);
     const double given = advance_state(sim, dt);
-    if (!has_failed(sim, given)) return dt;
+    if (!has_failed(sim, given, burst(sim, dt, &before))) return dt;
     fields_restore(&sim->grid.fields, sim->grid.mesh);
     sim->dissipated = dissipated;
     dt_max = RETRY_FACTOR * dt;

@@ -33,6 +33,13 @@ void four_state_measure(struct four_state *sim,
                         struct four_state_measures *measures);
 /* Return kinetic + potential + fluctuating + elastic energy. Collective. */
 double four_state_energy(const struct four_state *sim);
+/* Holds what grains have, kg/m and J/m (3D: kg and J); other: elastic and
+ * fluctuating energy, which may become kinetic. */
+struct four_state_store {
+  double mass, kinetic, other;
+};
+/* Sum over all ranks. Collective. */
+struct four_state_store four_state_store(const struct four_state *sim);
 /* Set p_E/p and the state of leaves [nleaves]; NULL: not asked for. p, p_E and
  * shear rates are made anew. Collective. */
 void four_state_find_states(struct four_state *sim, double *contact,

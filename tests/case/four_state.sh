@@ -1,0 +1,59 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs of model = "four_state": restart bit for bit, the same on three ranks,
+# wrong cases refused, a start that bursts. Usage: four_state.sh BUILD
+. "$(dirname "$0")/common.bash"
+talus=$build/talus
+column="$root/examples/four_state_column.lua level=6"
+
+# ends STATUS WORDS...: the command ends with this status
+ends() {
+  local expected=$1 status
+  shift
+  timeout "$limit" "$@" > output 2>&1
+  status=$?
+  [ $status -eq "$expected" ] || complain "$*: exit status $status"
+}
+
+says() {
+  grep -q "$1" output || complain "nothing matches $1"
+}
+
+# numbers DIR: series.csv without the wall clock
+numbers() {
+  cut -d, -f1-28 "$1/series.csv"
+}
+
+ends 0 "$talus" run $column stop=0.6 -o whole --quiet
+ends 5 "$talus" run $column stop=0.6 -o parts --quiet --max-steps 17
+ends 0 "$talus" run $column stop=0.6 -o parts --quiet --restart
+diff <(numbers whole) <(numbers parts) > output ||
+  complain "a restart changes series.csv"
+diff whole/profile.csv parts/profile.csv > output ||
+  complain "a restart changes profile.csv"
+
+ends 0 mpirun --oversubscribe -n 3 "$build/talus2d" run $column stop=0.6 \
+  -o ranks --quiet
+# fronts differ by less than the solvers' tolerance lets through, 1e-6 m
+paste -d, <(tail -n 1 whole/series.csv | cut -d, -f5) \
+  <(tail -n 1 ranks/series.csv | cut -d, -f5) |
+  awk -F, '{ d = $1 - $2; exit !(d < 1e-6 && d > -1e-6) }' ||
+  complain "three ranks have another front"
+
+sed 's/top = "slip"/top = { "outflow", pressure = 0 }/' \
+  "$root/examples/four_state_column.lua" > open.lua
+ends 2 "$talus" run open.lua level=5 -o open
+says 'has no inflow and no outflow'
+ends 2 "$talus" run $column nu_min=0.61 -o wrong
+says 'nu_min < nu_0 < nu_max'
+ends 2 "$talus" check $column eta_S=-1
+says 'eta_S'
+sed 's/rho_d = param/density = 1, rho_d = param/' \
+  "$root/examples/four_state_column.lua" > density.lua
+ends 2 "$talus" check density.lua
+says 'density'
+ends 3 "$talus" run $column K=1e5 stop=0.5 -o burst --quiet
+grep -qE 'grains burst|do not fit' burst/run.log ||
+  complain "run.log does not say why the start bursts"
+
+[ "$failures" -eq 0 ]
