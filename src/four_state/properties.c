@@ -62,18 +62,21 @@ static void set_mobility(struct four_state *sim) {
 }
 
 /* Return the acceleration that a pressure gradient gives both leaves of a face
- * which has more mass than they lend: the rest of its force, by mass. */
+ * which has more mass than they lend: the rest of its force, by mass, as far as
+ * it is more than the weight of the face, which it may only carry. */
 static double thrust(const struct four_state *sim, int d, int32_t f,
                      double gradient) {
   const int32_t *node = sim->grid.mesh->face_node[f];
   const double rho = sim->closure.param[LEE_HUANG_RHO_D];
-  const double mobility = sim->mobility_f->v[f];
+  const double mobility = sim->mobility_f->v[f], *nu = sim->nu->v;
   double mass[2];
   if (!(mobility > 0)) return 0;
   lent(sim, d, f, mass);
   const double rest = max2(1 - rho * mobility * (mass[0] + mass[1]), 0);
-  const double *nu = sim->nu->v;
-  return -rest * gradient / (rho * (nu[node[0]] + nu[node[1]]));
+  const double carried = fabs(sim->params->gravity[d]) / mobility;
+  const double force = max2(fabs(gradient) - carried, 0);
+  return -copysign(rest * force, gradient) /
+         (rho * (nu[node[0]] + nu[node[1]]));
 }
 
 /* Fill what was set, and keep interpolated values from falling below 0; p is
