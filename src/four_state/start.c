@@ -191,6 +191,30 @@ static void settle(struct four_state *sim, int axis) {
   }
 }
 
+/* Warn if a uniform start has a pressure that nothing holds: the grains burst.
+ * With K = 1e8 Pa and 0.575 it is 700 Pa, the weight of 5 cm. */
+static void check_pressure(const struct four_state *sim, int axis) {
+  static const double BURSTS = 5; /* pressure over weight */
+  const struct mesh *mesh = sim->grid.mesh;
+  const double nu = sim->keys->nu_start, g = sim->params->gravity[axis];
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (!four_state_has_grains(sim, i)) continue;
+    low = min2(low, mesh->x[i][axis] - 0.5 * mesh->h[i]);
+    high = max2(high, mesh->x[i][axis] + 0.5 * mesh->h[i]);
+  }
+  const double height = mesh_max(mesh, high) + mesh_max(mesh, -low);
+  const double p = four_state_pressure(&sim->closure, nu, 0, NULL);
+  const double weight =
+      sim->closure.param[LEE_HUANG_RHO_D] * nu * fabs(g) * height;
+  if (g == 0 || !isfinite(height) || p <= BURSTS * weight) return;
+  WARN_ONCE(
+      "grains begin at a solid fraction of %g with a pressure of %.3g Pa, %.3g "
+      "times their weight, and burst: take grains.start = \"balance\", a "
+      "smaller grains.nu_start or a smaller grains.K",
+      nu, p, p / weight);
+}
+
 static void check_boundaries(const struct params *params) {
   for (int b = 0; b < params->nboundaries; b++) {
     const enum boundary_type type = params->boundary[b].type;
@@ -229,6 +253,7 @@ struct four_state *four_state_new(const struct params *params,
   }
   openings_check(&sim->grid);
   if (balance) settle(sim, axis);
+  if (sim->keys->start == FOUR_STATE_UNIFORM) check_pressure(sim, axis);
   mem_free(depths.nu);
   return sim;
 }

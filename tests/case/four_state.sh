@@ -55,5 +55,9 @@ says 'density'
 ends 3 "$talus" run $column K=1e5 stop=0.5 -o burst --quiet
 grep -qE 'grains burst|do not fit' burst/run.log ||
   complain "run.log does not say why the start bursts"
+ends 0 "$talus" run $column K=1e10 start=uniform stop=0.01 -o pressed --quiet
+says 'times their weight, and burst'
+ends 0 "$talus" run $column start=uniform stop=0.01 -o plain --quiet
+grep -q burst output && complain "a start that does not burst is warned of"
 
 [ "$failures" -eq 0 ]
