@@ -60,11 +60,16 @@ def start(command):
             continue
 
 
+def without_comments(text):
+    return re.sub(r"\s*--[^\n]*", "", text)
+
+
 def run(talus, case, words, directory):
-    """Run, or go on, unless just that run is there, complete. Returns the exit
-    status."""
+    """Run, or go on, unless just that run is there, complete; comments of the
+    case may have changed. Returns the exit status."""
     stamp, stopped = directory / "sweep.txt", directory / "sweep-stopped.txt"
-    text = case.read_text(encoding="utf-8") + "\n".join(words)
+    text = "\n".join([without_comments(case.read_text(encoding="utf-8")),
+                      *words])
 
     def holds(path):
         return path.exists() and path.read_text(encoding="utf-8") == text
