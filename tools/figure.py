@@ -8,11 +8,11 @@
 PAPER is a module of tools/papers (lagree_staron_popinet_2011, valette_2019);
 without a FIGURE its figures are listed, `all` draws all. The case is run as
 often as the figure needs, N cells to the half-width of the column (default: as
-the figure says); name=value holds for all runs, as in slip=0.05. DIR (default:
+the figure says); name=value holds for all runs, as in strip=0. DIR (default:
 PAPER.out) gets one directory per run, in `runs`, and for each figure
-  NAME.png   the figure
-  NAME.csv   its table: quantity, ours, the paper's, lowest and highest value
-             allowed where there is a bar, and whether it is kept
+  figNAME.png  the figure
+  figNAME.csv  its table: quantity, ours, the paper's, lowest and highest
+               value allowed where there is a bar, and whether it is kept
 The table is printed too. A run that is there with the same parameters is not
 repeated, one that was stopped before its end (Ctrl-C) is continued; figures
 share runs. Ends with status 1 if a bar is missed.
