@@ -194,15 +194,26 @@ static inline double mesh_side(const struct mesh *mesh, const double *v,
 /* Return the part of mesh_net along axis d. */
 static inline double mesh_net_along(const struct mesh *mesh, const double *v,
                                     int32_t i, int d) {
-  return mesh_side(mesh, v, i, 2 * d + 1) - mesh_side(mesh, v, i, 2 * d);
+  const int32_t *face = mesh->cell_face[i];
+  const double lower = v[face[2 * d]], upper = v[face[2 * d + 1]];
+  const double net = upper - lower;
+  if (d > 0 || !mesh_is_axisymmetric(mesh)) return net;
+  return net + mesh->slant[i] * (upper + lower);
+}
+
+/* Return mesh_net in rings or not, as is known of the mesh before a loop. */
+static inline double mesh_net_of(const struct mesh *mesh, bool rings,
+                                 const double *v, int32_t i) {
+  const int32_t *face = mesh->cell_face[i];
+  double net = 0;
+  for (int d = 0; d < DIM; d++) net += v[face[2 * d + 1]] - v[face[2 * d]];
+  return rings ? net + mesh->slant[i] * (v[face[1]] + v[face[0]]) : net;
 }
 
 /* Return the net above of a filled face array v at leaf i. */
 static inline double mesh_net(const struct mesh *mesh, const double *v,
                               int32_t i) {
-  double net = 0;
-  for (int d = 0; d < DIM; d++) net += mesh_net_along(mesh, v, i, d);
-  return net;
+  return mesh_net_of(mesh, mesh_is_axisymmetric(mesh), v, i);
 }
 
 /* Return how much leaves leaf i: its outflow, in units of v times m^2 (in a
@@ -222,8 +233,12 @@ static inline double mesh_divergence(const struct mesh *mesh, const double *v,
  * volume, 1/s: how often a velocity v replaces the contents of the leaf. */
 static inline double mesh_turnover(const struct mesh *mesh, const double *v,
                                    int32_t i) {
+  const int32_t *face = mesh->cell_face[i];
   double sum = 0;
-  for (int s = 0; s < NFACE; s++) sum += fabs(mesh_side(mesh, v, i, s));
+  for (int s = 0; s < NFACE; s++) sum += fabs(v[face[s]]);
+  if (mesh_is_axisymmetric(mesh)) {
+    sum += mesh->slant[i] * (fabs(v[face[1]]) - fabs(v[face[0]]));
+  }
   return 0.5 * sum / mesh_width(mesh, i);
 }
 

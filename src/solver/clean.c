@@ -213,8 +213,8 @@ double clean_divergence(const struct mesh *mesh, const double *u_f) {
 
 /* Return the net outflow of leaf i beyond what `source`, 1/s, asks for; NULL:
  * none. */
-static double net_excess(const struct mesh *mesh, const double *source,
-                         const double *u_f, int32_t i) {
+static inline double net_excess(const struct mesh *mesh, const double *source,
+                                const double *u_f, int32_t i) {
   return mesh_outflow(mesh, u_f, i) -
          (source ? source[i] * mesh_volume(mesh, i) : 0);
 }
@@ -375,8 +375,9 @@ void clean_to_source(struct clean *clean, const struct mesh *mesh,
   CHECK(clean->revision == mesh->revision, "tree of another mesh");
   mesh_fill_faces(mesh, 1, &u_f);
   double excess = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    clean->net[i] = net_excess(mesh, source, u_f, i);
+  const struct mesh view = *mesh; /* which no net[i] can change */
+  for (int32_t i = 0; i < view.nleaves; i++) {
+    clean->net[i] = net_excess(&view, source, u_f, i);
     excess += clean->net[i];
   }
   balance_boundaries(clean, mesh, open, source, excess, u_f);

@@ -35,9 +35,12 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
                        double *mass) {
   const struct mesh *mesh = h->mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t s = h->leaf_slot[i];
+    const int32_t s = h->leaf_slot[i], *face = mesh->cell_face[i];
     const double ratio = conductance(mesh, i, factor);
     for (int f = 0; f < NFACE; f++) {
+      h->w[f][s] = (float)(ratio * alpha_f[face[f]]);
+    }
+    for (int f = 0; f < 2 && mesh_is_axisymmetric(mesh); f++) {
       h->w[f][s] = (float)(ratio * mesh_side(mesh, alpha_f, i, f));
     }
     mass[s] = mass_density ? mass_density[i] * mesh_volume(mesh, i) : 0;

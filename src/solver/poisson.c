@@ -23,6 +23,13 @@ void poisson_flux(const struct mesh *mesh, const double *alpha_f,
   mesh_fill_faces(mesh, 1, (double *const[]){flux});
 }
 
+static inline __attribute__((always_inline)) void divergence(
+    const struct mesh *mesh, bool rings, const double *flux, double *q) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    q[i] = mesh_net_of(mesh, rings, flux, i) / mesh_width(mesh, i);
+  }
+}
+
 /* Set q = div(alpha grad p) - mass p, p filled; q may be p. */
 static void operate(const struct context *k, const double *p, double *q) {
   const struct mesh *mesh = k->mesh;
@@ -31,8 +38,11 @@ static void operate(const struct context *k, const double *p, double *q) {
   for (int32_t i = 0; i < mesh->nleaves && k->mass; i++) {
     q[i] = mesh_divergence(mesh, flux, i) - k->mass[i] * p[i];
   }
-  for (int32_t i = 0; i < mesh->nleaves && !k->mass; i++) {
-    q[i] = mesh_divergence(mesh, flux, i);
+  if (k->mass) return;
+  if (mesh_is_axisymmetric(mesh)) {
+    divergence(mesh, true, flux, q);
+  } else {
+    divergence(mesh, false, flux, q);
   }
 }
 

@@ -146,6 +146,20 @@ void viscous_force(const struct mesh *mesh, const struct viscosity *viscosity,
   for (int e = 0; e < n; e++) mem_free(tau[e]);
 }
 
+/* q = rho u - theta dt div(stress), but for the hoop's. */
+static inline __attribute__((always_inline)) void add_forces(
+    const struct context *k, bool rings, double *const tau[],
+    double *const u[DIM], double *const q[DIM]) {
+  const struct mesh *mesh = k->mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double ratio = k->theta_dt / mesh_width(mesh, i);
+    for (int e = 0; e < DIM; e++) {
+      q[e][i] =
+          k->rho[i] * u[e][i] - ratio * mesh_net_of(mesh, rings, tau[e], i);
+    }
+  }
+}
+
 /* q = rho u - theta dt div(stress), u filled; q may be u. */
 static void operate(const struct context *k, double *const u[DIM],
                     double *const q[DIM]) {
@@ -156,11 +170,10 @@ static void operate(const struct context *k, double *const u[DIM],
     tau[e] = k->h->work_faces + (int64_t)e * mesh->nfaces_all;
   }
   stress(mesh, k->viscosity, u, tau);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double ratio = k->theta_dt / mesh_width(mesh, i);
-    for (int e = 0; e < DIM; e++) {
-      q[e][i] = k->rho[i] * u[e][i] - ratio * mesh_net(mesh, tau[e], i);
-    }
+  if (n > DIM) {
+    add_forces(k, true, tau, u, q);
+  } else {
+    add_forces(k, false, tau, u, q);
   }
   for (int32_t i = 0; i < mesh->nleaves && n > DIM; i++) {
     q[0][i] -= k->theta_dt * mesh_hoop_force(mesh, tau[HOOP], i);

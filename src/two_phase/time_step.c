@@ -40,9 +40,11 @@ double time_step_boundary_speed(const struct two_phase *sim, bool per_leaf) {
 
 double time_step_rate(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
+  const struct mesh view = *mesh; /* known to be the same all over the loop */
+  const double *u_f = sim->u_f->v;
   double rate = 0;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    rate = max2(rate, mesh_turnover(mesh, sim->u_f->v, i));
+  for (int32_t i = 0; i < view.nleaves; i++) {
+    rate = max2(rate, mesh_turnover(&view, u_f, i));
   }
   return mesh_max(mesh, rate);
 }

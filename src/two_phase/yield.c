@@ -188,11 +188,15 @@ void yield_update(struct two_phase *sim, double *const u[DIM]) {
   sim->yield.gamma_r = STIFF * larger_rate(params, height, flow);
 }
 
+/* Loops over faces are compiled for the number n of rows in a plane and for
+ * that in rings. */
+#define KERNEL static inline __attribute__((always_inline))
+
 /* Set `guess` to D* at face f, over dt. */
-static void extrapolate(const struct yield *yield, int32_t f, double dt,
+KERNEL void extrapolate(const struct yield *yield, int n, int32_t f, double dt,
                         double guess[STRAIN_ROWS]) {
   double now[STRAIN_ROWS], product = 0, size = 0, most = 0;
-  for (int k = 0; k < yield->nrows; k++) {
+  for (int k = 0; k < n; k++) {
     now[k] = yield->strain[k]->v[f];
     guess[k] = now[k] + dt * yield->trend[k]->v[f];
     product += guess[k] * now[k];
@@ -200,13 +204,13 @@ static void extrapolate(const struct yield *yield, int32_t f, double dt,
     most += guess[k] * guess[k];
   }
   const bool turns = product<LEAST * size, leaps = most> MOST * MOST * size;
-  for (int k = 0; k < yield->nrows && (turns || leaps); k++) {
+  for (int k = 0; k < n && (turns || leaps); k++) {
     guess[k] = turns ? LEAST * now[k] : now[k];
   }
 }
 
 /* Project q, of n rows, on |q| <= tau_y; returns the factor that does it. */
-static double project(int n, double q[STRAIN_ROWS], int d, double tau_y) {
+KERNEL double project(int n, double q[STRAIN_ROWS], int d, double tau_y) {
   double *rows[STRAIN_ROWS];
   for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &q[k];
   const double size = sqrt(strain_norm_squared(n, rows, d, 0));
@@ -217,11 +221,11 @@ static double project(int n, double q[STRAIN_ROWS], int d, double tau_y) {
 
 /* Give the shear rate of u^n at face f of axis d if D* has left out a jolt,
  * else 0. */
-static double find_jolt(const struct yield *yield, double guess[STRAIN_ROWS],
-                        int d, int32_t f) {
+KERNEL double find_jolt(const struct yield *yield, int n,
+                        double guess[STRAIN_ROWS], int d, int32_t f) {
   double *rows[STRAIN_ROWS];
   for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &guess[k];
-  const double known = 2 * sqrt(strain_norm_squared(yield->nrows, rows, d, 0));
+  const double known = 2 * sqrt(strain_norm_squared(n, rows, d, 0));
   const double shear = yield->shear->v[f];
   return shear > 2 * known + yield->gamma_r / STIFF ? shear : 0;
 }
@@ -261,27 +265,38 @@ static void set_stiffness(struct two_phase *sim, double *r) {
   scratch_give(&sim->scratch, __func__);
 }
 
+/* Set eta and the stress m s^n at face f of axis d. */
+KERNEL void linearise_face(const struct two_phase *sim, int n, int d, int32_t f,
+                           double dt, const double *r, double *eta,
+                           double *const stress[]) {
+  const struct yield *yield = &sim->yield;
+  double q[STRAIN_ROWS];
+  extrapolate(yield, n, f, dt, q);
+  const double jolt = find_jolt(yield, n, q, d, f);
+  for (int k = 0; k < n; k++) q[k] = yield->s[k]->v[f] + 2 * r[f] * q[k];
+  const double tau_y = yield->tau_y->v[f];
+  double m = project(n, q, d, tau_y);
+  if (jolt > 0 && r[f] > 0) m = min2(m, tau_y / (r[f] * jolt));
+  eta[f] = sim->eta_f->v[f] + m * r[f];
+  for (int e = 0; e < (DIM == 2 ? n : DIM); e++) {
+    stress[e][f] = m * yield->s[e]->v[f];
+  }
+}
+
 void yield_linearise(struct two_phase *sim, double dt, double *r, double *eta,
                      double *const force[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
-  const struct yield *yield = &sim->yield;
   double *stress[STRAIN_ROWS];
   const int n = mesh_is_axisymmetric(mesh) ? STRAIN_HOOP + 1 : DIM;
   scratch_take(&sim->scratch, FIELD_FACE, __func__, n, stress);
   set_stiffness(sim, r);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      double q[STRAIN_ROWS];
-      extrapolate(yield, f, dt, q);
-      const double jolt = find_jolt(yield, q, d, f);
-      for (int k = 0; k < yield->nrows; k++) {
-        q[k] = yield->s[k]->v[f] + 2 * r[f] * q[k];
+      if (sim->yield.nrows == DIM) {
+        linearise_face(sim, DIM, d, f, dt, r, eta, stress);
+      } else {
+        linearise_face(sim, STRAIN_ROWS, d, f, dt, r, eta, stress);
       }
-      const double tau_y = yield->tau_y->v[f];
-      double m = project(yield->nrows, q, d, tau_y);
-      if (jolt > 0 && r[f] > 0) m = min2(m, tau_y / (r[f] * jolt));
-      eta[f] = sim->eta_f->v[f] + m * r[f];
-      for (int e = 0; e < n; e++) stress[e][f] = m * yield->s[e]->v[f];
     }
   }
   mesh_fill_faces(mesh, 1, &eta);
@@ -291,18 +306,34 @@ void yield_linearise(struct two_phase *sim, double dt, double *r, double *eta,
 }
 
 /* Renew the trend of D at face f, which is now `strain` after dt. */
-static void renew_trend(const struct yield *yield, int32_t f, double dt,
+KERNEL void renew_trend(const struct yield *yield, int n, int32_t f, double dt,
                         const double strain[STRAIN_ROWS]) {
   double change[STRAIN_ROWS], product = 0, size = 0, last = 0;
-  for (int k = 0; k < yield->nrows; k++) {
+  for (int k = 0; k < n; k++) {
     const double before = yield->trend[k]->v[f];
     change[k] = (strain[k] - yield->strain[k]->v[f]) / dt;
     product += change[k] * before;
     size += change[k] * change[k], last += before * before;
   }
   const bool agree = product > AGREE * sqrt(size * last);
-  for (int k = 0; k < yield->nrows; k++) {
+  for (int k = 0; k < n; k++) {
     yield->trend[k]->v[f] = change[k] * (agree ? 1 : FORGOTTEN);
+  }
+}
+
+/* Take D and the stress at face f of axis d. */
+KERNEL void advance_face(const struct yield *yield, int n, int d, int32_t f,
+                         double dt, const double *r,
+                         double *const rows[STRAIN_ROWS], bool again) {
+  double strain[STRAIN_ROWS], q[STRAIN_ROWS];
+  for (int k = 0; k < n; k++) {
+    strain[k] = rows[k][f];
+    q[k] = yield->s[k]->v[f] + 2 * r[f] * strain[k];
+  }
+  if (!again) renew_trend(yield, n, f, dt, strain);
+  project(n, q, d, yield->tau_y->v[f]);
+  for (int k = 0; k < n; k++) {
+    yield->strain[k]->v[f] = strain[k], yield->s[k]->v[f] = q[k];
   }
 }
 
@@ -315,15 +346,10 @@ void yield_advance(struct two_phase *sim, double dt, const double *r,
   strain_find(mesh, sim->skin, u, rows);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      double strain[STRAIN_ROWS], q[STRAIN_ROWS];
-      for (int k = 0; k < yield->nrows; k++) {
-        strain[k] = rows[k][f];
-        q[k] = yield->s[k]->v[f] + 2 * r[f] * strain[k];
-      }
-      if (!again) renew_trend(yield, f, dt, strain);
-      project(yield->nrows, q, d, yield->tau_y->v[f]);
-      for (int k = 0; k < yield->nrows; k++) {
-        yield->strain[k]->v[f] = strain[k], yield->s[k]->v[f] = q[k];
+      if (yield->nrows == DIM) {
+        advance_face(yield, DIM, d, f, dt, r, rows, again);
+      } else {
+        advance_face(yield, STRAIN_ROWS, d, f, dt, r, rows, again);
       }
     }
   }
