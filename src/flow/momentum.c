@@ -79,14 +79,20 @@ void momentum_flux(const struct mesh *mesh, int d, double dt,
   mesh_fill_faces(mesh, DIM + 1, v);
 }
 
-void momentum_update(const struct mesh *mesh, int d, double dt,
-                     const double density[2], const double *u_f,
-                     const double *c_old, const double *cc, const double *band,
-                     double *const u_start[DIM],
-                     const struct momentum_flux *flux, double *const u[DIM]) {
+/* Return mesh_side in rings, along r, or the plain value. */
+static inline double side_of(const struct mesh *mesh, bool rings,
+                             const double *v, int32_t i, int s) {
+  return rings ? mesh_side(mesh, v, i, s) : v[mesh->cell_face[i][s]];
+}
+
+static inline __attribute__((always_inline)) void update_leaves(
+    const struct mesh *mesh, bool rings, int d, double dt,
+    const double density[2], const double *u_f, const double *c_old,
+    const double *cc, const double *band, double *const u_start[DIM],
+    const struct momentum_flux *flux, double *const u[DIM]) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double mass[2] = {mesh_side(mesh, flux->mass, i, 2 * d),
-                            mesh_side(mesh, flux->mass, i, 2 * d + 1)};
+    const double mass[2] = {side_of(mesh, rings, flux->mass, i, 2 * d),
+                            side_of(mesh, rings, flux->mass, i, 2 * d + 1)};
     if (band[i] == 0 && mass[0] == 0 && mass[1] == 0) continue;
     const double k = dt / mesh_width(mesh, i);
     double rho = density[1] + c_old[i] * (density[0] - density[1]);
@@ -98,11 +104,26 @@ void momentum_update(const struct mesh *mesh, int d, double dt,
     }
     for (int e = 0; e < DIM; e++) {
       const double *carried = flux->carried[e];
-      u[e][i] -= k / rho *
-                 ((mesh_side(mesh, carried, i, 2 * d + 1) - mass[1] * u[e][i]) -
-                  (mesh_side(mesh, carried, i, 2 * d) - mass[0] * u[e][i]) -
-                  dilation * (u_start[e][i] - u[e][i]));
+      u[e][i] -=
+          k / rho *
+          ((side_of(mesh, rings, carried, i, 2 * d + 1) - mass[1] * u[e][i]) -
+           (side_of(mesh, rings, carried, i, 2 * d) - mass[0] * u[e][i]) -
+           dilation * (u_start[e][i] - u[e][i]));
     }
+  }
+}
+
+void momentum_update(const struct mesh *mesh, int d, double dt,
+                     const double density[2], const double *u_f,
+                     const double *c_old, const double *cc, const double *band,
+                     double *const u_start[DIM],
+                     const struct momentum_flux *flux, double *const u[DIM]) {
+  if (d == 0 && mesh_is_axisymmetric(mesh)) {
+    update_leaves(mesh, true, d, dt, density, u_f, c_old, cc, band, u_start,
+                  flux, u);
+  } else {
+    update_leaves(mesh, false, d, dt, density, u_f, c_old, cc, band, u_start,
+                  flux, u);
   }
   for (int e = 0; e < DIM; e++) mesh_touch(mesh, u[e]);
 }

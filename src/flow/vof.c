@@ -44,8 +44,12 @@ void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
     known[s] = node < mesh->begin_virtual;
   }
   plane_normal(stencil, known, n);
-  if (mesh_is_axisymmetric(mesh)) ring_normal(mesh, leaf, stencil, known, n);
-  *alpha = ring_alpha(n, stencil[STENCIL_CENTRE], mesh_slant(mesh, leaf));
+  if (mesh_is_axisymmetric(mesh)) {
+    ring_normal(mesh, leaf, stencil, known, n);
+    *alpha = ring_alpha(n, stencil[STENCIL_CENTRE], mesh->slant[leaf]);
+  } else {
+    *alpha = plane_alpha(n, stencil[STENCIL_CENTRE]);
+  }
 }
 
 double vof_part(const struct mesh *mesh, int32_t leaf, const double n[DIM],

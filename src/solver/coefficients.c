@@ -29,6 +29,19 @@ static double wall_factor(const struct bc *bc, double h) {
   }
 }
 
+/* Weigh the sides across r of leaves in rings. */
+static void weigh_sides(struct hierarchy *h, const double *alpha_f,
+                        double factor) {
+  const struct mesh *mesh = h->mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double ratio = conductance(mesh, i, factor);
+    for (int f = 0; f < 2; f++) {
+      h->w[f][h->leaf_slot[i]] =
+          (float)(ratio * mesh_side(mesh, alpha_f, i, f));
+    }
+  }
+}
+
 /* Set the sides and the mass [nslots] of leaves. */
 static void set_leaves(struct hierarchy *h, const double *alpha_f,
                        double factor, const double *mass_density,
@@ -40,11 +53,9 @@ static void set_leaves(struct hierarchy *h, const double *alpha_f,
     for (int f = 0; f < NFACE; f++) {
       h->w[f][s] = (float)(ratio * alpha_f[face[f]]);
     }
-    for (int f = 0; f < 2 && mesh_is_axisymmetric(mesh); f++) {
-      h->w[f][s] = (float)(ratio * mesh_side(mesh, alpha_f, i, f));
-    }
     mass[s] = mass_density ? mass_density[i] * mesh_volume(mesh, i) : 0;
   }
+  if (mesh_is_axisymmetric(mesh)) weigh_sides(h, alpha_f, factor);
 }
 
 /* Add the conductances of the walls of level l to wall[c] [nslots]. Half a cell
