@@ -94,6 +94,10 @@ must 2 talus2d run $rest -o yield --quiet
 stops 2 talus2d run $rest -o yields --quiet --max-steps 31
 must 2 talus2d run $rest -o yields --quiet --restart
 same "rest on 2" yield yields
+# which a run with a cap has not: there is no stress to go on from
+stops 1 talus2d run $rest regularisation=clip -o capped --quiet --max-steps 3
+refused 'no values of stress_0 .* needs the .*regularisation of the first run' \
+  1 talus2d run $rest -o capped --restart
 # around an axis, where it has one row more, and on a floor that changes
 cylinder="$root/examples/cylinder.lua cells=8 stop=1 strip=5 r_i=0.02"
 for n in 1 2; do

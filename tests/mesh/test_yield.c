@@ -287,6 +287,61 @@ START_TEST(a_cut_leaf_weighs_on_the_face_below) {
 }
 END_TEST
 
+/* Grains touch the floor by 1 - 10 c' where a film of gas takes c' of the lowest
+ * leaves. */
+START_TEST(grains_touch_what_a_film_keeps_them_from) {
+  const double film[] = {1e-6, 0.02, 0.3}, h = 1. / 8;
+  double height = film[_i] * h, worst = 0;
+  struct params p = box_params(3);
+  p.shape = (struct function){level_grains, &height};
+  p.grains.rheology = exact_closure("bingham");
+  rheology_set(&p.grains.rheology, "tau_y", 1);
+  rheology_set(&p.grains.rheology, "eta_0", 1);
+  struct two_phase *sim = flat_grains(&p);
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t f = mesh->face_begin[UP]; f < mesh->face_begin[UP + 1]; f++) {
+    if (mesh->face_patch[f] != 2 * UP) continue;
+    const double want = fmax(1 - 10 * film[_i], 0);
+    worst = larger(worst, fabs(sim->yield.tau_y->v[f] - want));
+  }
+  worst = mesh_max(mesh, worst);
+  two_phase_destroy(sim);
+  ck_assert_double_lt(worst, 1e-10);
+}
+END_TEST
+
+/* D = 0 of before the projection leaves out a shear rate of 1e3 that it has
+ * brought: the solve then takes the viscosity of that, tau_y/1e3. */
+START_TEST(a_jolt_lets_grains_yield) {
+  struct params p = periodic_params(2);
+  double worst = 0;
+  p.grains.rheology = exact_closure("bingham");
+  rheology_set(&p.grains.rheology, "tau_y", 1);
+  rheology_set(&p.grains.rheology, "eta_0", 1);
+  struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  double *r = MEM_NEW(double, mesh->nfaces_all);
+  double *eta = MEM_NEW(double, mesh->nfaces_all), *force[DIM];
+  for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, mesh->ncells);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    sim->eta_f->v[f] = 1;
+    sim->yield.tau_y->v[f] = 1;
+    sim->yield.shear->v[f] = _i ? 1e3 : 1;
+  }
+  sim->yield.gamma_r = 1e-3;
+  yield_linearise(sim, 0.1, r, eta, force);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const double want = 1 + (_i ? 1e-3 : r[f]);
+    worst = larger(worst, fabs(eta[f] / want - 1));
+  }
+  worst = mesh_max(mesh, worst);
+  for (int d = 0; d < DIM; d++) mem_free(force[d]);
+  mem_free(r), mem_free(eta);
+  two_phase_destroy(sim);
+  ck_assert_double_lt(worst, 1e-12);
+}
+END_TEST
+
 /* Where D is 2 on all faces but one, on which it vanishes, r is tau_y/(gamma_r
  * + 2), or a little more beside that one. */
 START_TEST(a_still_face_in_a_flow_is_as_soft_as_the_others) {
@@ -390,6 +445,8 @@ Suite *yield_suite(void) {
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("surface");
   tcase_add_loop_test(tcase, faces_are_wet_as_far_as_grains_reach, 0, 2);
+  tcase_add_loop_test(tcase, grains_touch_what_a_film_keeps_them_from, 0, 3);
+  tcase_add_loop_test(tcase, a_jolt_lets_grains_yield, 0, 2);
   tcase_add_test(tcase, a_cut_leaf_weighs_on_the_face_below);
   tcase_add_test(tcase, a_still_face_in_a_flow_is_as_soft_as_the_others);
   suite_add_tcase(suite, tcase);
