@@ -33,15 +33,23 @@ bool rest_is_reached(struct two_phase *sim) {
   return sim->slow_time >= params->rest_time;
 }
 
-/* Return the size l of the heap, the volume of its grains to the power 1/DIM.
- */
-static double size_of(const struct two_phase *sim) {
+/* Find the size l of the heap and the root of the mean square speed of its
+ * grains. Leaves that are mostly gas have the speed of that. */
+static void find_motion(const struct two_phase *sim, double *size,
+                        double *speed) {
   const struct mesh *mesh = sim->grid.mesh;
-  double volume = 0;
+  const int dimension = mesh_is_axisymmetric(mesh) ? 3 : DIM;
+  double sum[2] = {0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    volume += sim->c->v[i] * mesh_volume(mesh, i);
+    const double grains = sim->c->v[i] * mesh_volume(mesh, i);
+    double u2 = 0;
+    for (int d = 0; d < DIM; d++) u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
+    sum[0] += grains;
+    if (sim->c->v[i] > 0.5) sum[1] += grains * u2;
   }
-  return pow(mesh_sum(mesh, volume), 1. / DIM);
+  const double volume = mesh_sum(mesh, sum[0]);
+  *size = pow(volume, 1. / dimension);
+  *speed = sqrt(mesh_sum(mesh, sum[1]) / max2(volume, 1e-300));
 }
 
 static void set_rest(struct two_phase *sim, bool rests) {
@@ -57,13 +65,14 @@ static void set_rest(struct two_phase *sim, bool rests) {
 }
 
 void rest_note(struct two_phase *sim) {
-  double g2 = 0;
+  double g2 = 0, size, speed;
   if (!sim->exact) return;
   for (int d = 0; d < DIM; d++) {
     g2 += sim->params->gravity[d] * sim->params->gravity[d];
   }
-  const double g = sqrt(g2), size = size_of(sim), time = sim->model.time;
-  if (!(rest_fastest(sim) < STILL * sqrt(g * size))) sim->arrest.moved = time;
+  const double g = sqrt(g2), time = sim->model.time;
+  find_motion(sim, &size, &speed);
+  if (!(speed < STILL * sqrt(g * size))) sim->arrest.moved = time;
   set_rest(sim,
            g > 0 && size > 0 && time - sim->arrest.moved >= sqrt(size / g));
 }

@@ -287,8 +287,8 @@ START_TEST(a_cut_leaf_weighs_on_the_face_below) {
 }
 END_TEST
 
-/* Grains touch the floor by 1 - 10 c' where a film of gas takes c' of the lowest
- * leaves. */
+/* Grains touch the floor by 1 - 10 c' where a film of gas takes c' of the
+ * lowest leaves. */
 START_TEST(grains_touch_what_a_film_keeps_them_from) {
   const double film[] = {1e-6, 0.02, 0.3}, h = 1. / 8;
   double height = film[_i] * h, worst = 0;

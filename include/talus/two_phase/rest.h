@@ -2,14 +2,17 @@
 /* Rest: the end of a run whose grains have stopped (output.stop_at_rest), and
  * the arrest of grains with an exact yield.
  *
- * Grains are still while the fastest are slower than 1e-3 sqrt(g l), l^DIM the
+ * Grains are still while the root of their mean square speed (of leaves more
+ * than half full) is below 1e-3 sqrt(g l), l^DIM (l^3 around an axis) the
  * volume of all grains; a tolerance of 1e-4 of the solvers leaves less. They
  * have come to rest when they have been still for sqrt(l/g), in which what
  * nothing holds falls by l/2, and the arrest is the last time they were not. A
  * yield stress stops grains in finite time: their speed falls through a decade
  * within a few steps there, and then slowly, as the scheme relaxes
- * (docs/notes/arrest.md). That no stress be at its yield is too much to ask:
- * some grains at the toe and the surface of a heap at rest are.
+ * (docs/notes/arrest.md). The fastest grains tell less: a cell at the tip of a
+ * heap may flow on for long, as the law has it. That no stress be at its yield
+ * is too much to ask, as some grains at the toe and the surface of a heap at
+ * rest are.
  */
 #ifndef TALUS_TWO_PHASE_REST_H
 #define TALUS_TWO_PHASE_REST_H
