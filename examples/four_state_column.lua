@@ -24,7 +24,8 @@
 -- applications to collapse of a two-dimensional granular column, Phys. Fluids
 -- 27 (2015) 113303, section V, tables I and II, figures 3 to 8.
 --
--- Cost. Level 8, 6 tau_c: 950 steps, half a minute on one core; level 7: 6 s.
+-- Cost. Level 8, 6 tau_c: 880 steps, a quarter of a minute on one core; level 7:
+-- 3 s.
 --
 -- Expect. Case 2 runs out by 26 cm and rests 6.1 cm high. The paper prints 20.7
 -- cm: with the printed viscosity of few grains a hot, sticky cloud drags on the
@@ -33,7 +34,9 @@
 -- them) to 30.6 cm, examples/reference/discrete_case2.csv.
 --
 -- Try. case=1 and case=3; the paper's vacuum: knudsen=1e30 T_max=100; and rows
--- of table II:
+-- of table II, figures 3 and 8:
+--   tools/plot_packing.py DIR
+--   tools/plot_state.py DIR 1 2
 --   tools/sweep.py examples/four_state_column.lua eta_S=0.30,0.42,0.51 \
 --     --base 0.056
 
