@@ -25,7 +25,7 @@ static const double kQuarter = 1.57079632679489661923; /* of a wave */
 /* Make a box of edge 1 from the radius `inner` on. */
 static struct forest *rings_make(double inner, enum grid_kind grid, int l) {
   struct forest_layout layout = {.size = 1, .trees = {1, 1}};
-  const double centre[] = {inner + 0.31, 0.42}, axis[] = {inner, 0.6};
+  const double centre[3] = {inner + 0.31, 0.42}, axis[3] = {inner, 0.6};
   layout.origin[0] = inner;
   layout.axisymmetric = true;
   struct forest *forest = forest_new(MPI_COMM_WORLD, &layout, l);
