@@ -289,7 +289,7 @@ def crest(x, height):
 
 def crater(study):
     run = collapse(study, TALLEST)
-    outlines = run.outlines([t for t in TIMES if t > 0])
+    outlines = run.outlines([t for t in TIMES if 0 < t < run.time[-1]])
     fig, (ax,) = make_panels(1, height=4)
     for (time, x, height), colour in zip(outlines, shades(len(outlines))):
         ax.plot(x, height, color=colour, label=f"{time:.3g}")
@@ -346,10 +346,12 @@ def shear_maps(a, times):
         rows = []
         for s in snapshots:
             flowing = run.flowing(s)
+            if not flowing.any():
+                continue
             x = 0.5 * (s.low + s.high)[:, 0]
             weight = s.grains() * np.prod(s.high - s.low, 1) * rates(s)
             place = (np.average(x[flowing], weights=weight[flowing])
-                     / run.front[-1] if flowing.any() else math.nan)
+                     / run.front[-1])
             rows.append(Row(f"mean place of the shear at "
                             f"{s.time / run.unit:.3g}, over r_f", place))
         study.finish(fig, rows)
