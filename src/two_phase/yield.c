@@ -321,39 +321,74 @@ KERNEL void renew_trend(const struct yield *yield, int n, int32_t f, double dt,
   }
 }
 
-/* Take D and the stress at face f of axis d. */
+/* Give |T| of one tensor, of n rows. */
+KERNEL double norm(int n, double tensor[STRAIN_ROWS], int d) {
+  double *rows[STRAIN_ROWS];
+  for (int k = 0; k < n; k++) rows[k] = &tensor[k];
+  return sqrt(strain_norm_squared(n, rows, d, 0));
+}
+
+/* Take D and the stress at face f of axis d from a solve with m, and add to sum
+ * what the mismatch (yield.h) has sums of. */
 KERNEL void advance_face(const struct yield *yield, int n, int d, int32_t f,
-                         double dt, const double *r,
-                         double *const rows[STRAIN_ROWS], bool again) {
-  double strain[STRAIN_ROWS], q[STRAIN_ROWS];
+                         double volume, double r, double m,
+                         const double strain[STRAIN_ROWS], double sum[4]) {
+  const double tau_y = yield->tau_y->v[f];
+  double now[STRAIN_ROWS], q[STRAIN_ROWS], lack[STRAIN_ROWS];
   for (int k = 0; k < n; k++) {
-    strain[k] = rows[k][f];
-    q[k] = yield->s[k]->v[f] + 2 * r[f] * strain[k];
+    now[k] = strain[k];
+    q[k] = yield->s[k]->v[f] + 2 * r * now[k];
+    lack[k] = -m * q[k];
   }
-  if (!again) renew_trend(yield, n, f, dt, strain);
-  project(n, q, d, yield->tau_y->v[f]);
+  project(n, q, d, tau_y);
   for (int k = 0; k < n; k++) {
-    yield->strain[k]->v[f] = strain[k], yield->s[k]->v[f] = q[k];
+    yield->strain[k]->v[f] = now[k], yield->s[k]->v[f] = q[k];
+    q[k] += 2 * r * now[k];
+  }
+  if (r == 0) return;
+  project(n, q, d, tau_y);
+  for (int k = 0; k < n; k++) lack[k] += q[k];
+  const double size = volume * norm(n, lack, d);
+  sum[0] += size;
+  sum[1] += volume * tau_y;
+  sum[2] += size / (2 * r);
+  sum[3] += volume * norm(n, now, d);
+}
+
+/* Do it at faces of axis d; eta: of the solve. */
+KERNEL void advance_faces(const struct two_phase *sim, int n, int d, double dt,
+                          const double *r, const double *eta,
+                          double *const rows[STRAIN_ROWS], bool again,
+                          double sum[4]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+    const double h = mesh->face_h[f], volume = DIM == 2 ? h * h : h * h * h;
+    const double m = r[f] > 0 ? (eta[f] - sim->eta_f->v[f]) / r[f] : 0;
+    double strain[STRAIN_ROWS];
+    for (int k = 0; k < n; k++) strain[k] = rows[k][f];
+    if (!again) renew_trend(&sim->yield, n, f, dt, strain);
+    advance_face(&sim->yield, n, d, f, volume, r[f], m, strain, sum);
   }
 }
 
-void yield_advance(struct two_phase *sim, double dt, const double *r,
-                   double *const u[DIM], bool again) {
+double yield_advance(struct two_phase *sim, double dt, const double *r,
+                     const double *eta, double *const u[DIM], bool again) {
   const struct mesh *mesh = sim->grid.mesh;
-  const struct yield *yield = &sim->yield;
-  double *rows[STRAIN_ROWS];
-  scratch_take(&sim->scratch, FIELD_FACE, __func__, yield->nrows, rows);
+  const int n = sim->yield.nrows;
+  double *rows[STRAIN_ROWS], sum[4] = {0};
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, n, rows);
   strain_find(mesh, sim->skin, u, rows);
   for (int d = 0; d < DIM; d++) {
-    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      if (yield->nrows == DIM) {
-        advance_face(yield, DIM, d, f, dt, r, rows, again);
-      } else {
-        advance_face(yield, STRAIN_ROWS, d, f, dt, r, rows, again);
-      }
+    if (n == DIM) {
+      advance_faces(sim, DIM, d, dt, r, eta, rows, again, sum);
+    } else {
+      advance_faces(sim, STRAIN_ROWS, d, dt, r, eta, rows, again, sum);
     }
   }
   scratch_give(&sim->scratch, __func__);
+  for (int k = 0; k < 4; k++) sum[k] = mesh_sum(mesh, sum[k]);
+  const double most = sum[1] * sum[3];
+  return most > 0 ? sum[0] * sum[2] / most : 0;
 }
 
 void yield_find_state(struct two_phase *sim, double *state) {

