@@ -183,7 +183,6 @@ static void set_acceleration(struct two_phase *sim,
                              double *const g[DIM]) {
   double *face = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   projection_acceleration(projection, face, g);
-  if (sim->exact) still_shield(sim, face, g);
   scratch_give(&sim->scratch, __func__);
 }
 

@@ -11,8 +11,6 @@
 #define SLOW 0.1
 /* Part of the last change of g that is expected again. */
 #define EXPECTED 0.9
-/* Leaves with less grains than this are gas. */
-#define HOLDS_GRAINS 0.01
 /* Stress within this part of the yield stress has reached it. */
 #define REACHED 1e-6
 
@@ -50,21 +48,7 @@ void still_find(struct two_phase *sim, double dt) {
     for (int e = 0; e < DIM; e++) u2 += sim->u[e]->v[i] * sim->u[e]->v[i];
     sim->yield.still->v[i] = wet > 0 && held == wet && u2 < slow2;
   }
-  field_fill(mesh, sim->yield.still);
   scratch_give(&sim->scratch, __func__);
-}
-
-void still_shield(const struct two_phase *sim, const double *face,
-                  double *const g[DIM]) {
-  const struct mesh *mesh = sim->grid.mesh;
-  const double *still = sim->yield.still->v;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    if (sim->c->v[i] > HOLDS_GRAINS || still[i] > 0) continue;
-    for (int s = 0; s < NFACE; s++) {
-      const double wall = still[mesh->stencil[i][stencil_face(s)]];
-      g[s >> 1][i] -= 0.5 * wall * face[mesh->cell_face[i][s]];
-    }
-  }
 }
 
 void still_forget(struct two_phase *sim) {

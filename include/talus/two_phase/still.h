@@ -19,17 +19,10 @@
 #ifndef TALUS_TWO_PHASE_STILL_H
 #define TALUS_TWO_PHASE_STILL_H
 
-#include "talus/mesh.h"
-
 struct two_phase;
 
 /* Find which leaves are still, for a step of dt. Collective. */
 void still_find(struct two_phase *sim, double dt);
-/* Let grains at rest be walls for the gas beside them: what accelerates faces
- * of grains, face [nfaces_all], their stress resists, but that of gas would
- * not. Sets g [nleaves] there. */
-void still_shield(const struct two_phase *sim, const double *face,
-                  double *const g[DIM]);
 /* Forget the change of g. */
 void still_forget(struct two_phase *sim);
 /* Add to g, which is that of p^n, what is guessed of its change. */
