@@ -144,10 +144,8 @@ static double exponent(int n, const double *x, const double *y) {
   return sum[0] / sum[1];
 }
 
-/* Report sensitivities. The paper lets grains stick to the floor but for a
- * strip of a few d ahead of the front, on which they and the air slip; our
- * floor has a slip length of as much. Without any the exponent is -1.07, -1.00,
- * -0.97 at levels 7, 8, 9. */
+/* Report sensitivities. The floor is that of the paper: grains stick to it, and
+ * gas slips on a strip of a few d ahead of them. */
 static void report_sensitivity(struct report *report) {
   static const double mu_s[] = {0.32, 0.42, 0.52, 0.62};
   static const double delta_mu[] = {0.18, 0.28, 0.38, 0.48};
@@ -164,9 +162,9 @@ static void report_sensitivity(struct report *report) {
     report_at_least(report, "mu_s", "exponent of height", level,
                     exponent(4, mu_s, high), 0.1);
     char rough[32];
-    snprintf(rough, sizeof rough, "level=%d slip=0", level);
+    snprintf(rough, sizeof rough, "level=%d strip=0", level);
     sweep("sensitivity", rough, 9, 1, "mu_s", 4, mu_s, run, high);
-    report_value(report, "mu_s", "exponent without slip", level,
+    report_value(report, "mu_s", "exponent without strip", level,
                  exponent(4, mu_s, run));
     sweep("sensitivity", more, 9, 1, "delta_mu", 4, delta_mu, run, high);
     report_at_most(report, "delta_mu", "exponent of run-out", level,
