@@ -3,8 +3,8 @@
  * that moves along with them [valette_2019, section 3.1 and fig. 2].
  *
  * Grains that advance over a rough floor must displace gas that sticks to it.
- * So on a side with the boundary "slip_strip" the gas slips up to `length`, a
- * few grain diameters, ahead of the grains: a place of the floor is smooth if
+ * On a side with the boundary "slip_strip" the gas slips up to `length`, a few
+ * grain diameters, ahead of the grains: a place of the floor is smooth if
  * the leaf on it holds no grains (c <= PARAMS_GAS) and one that holds some is
  * nearer than that, from edge to edge, so that at least the next place is
  * smooth. All others are rough; with an endless strip those below grains alone.
