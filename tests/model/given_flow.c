@@ -20,7 +20,7 @@ static const struct key KEYS[] = {
      .offset = offsetof(struct flow, rate), .help = "shear rate"}};
 static const char *const REFUSED[] = {"tracers", "velocity", "output.stop_at_rest", NULL};
 static const struct model_keys keys = {"given_flow", "grains in a shear flow",
-    KEYS, 1, sizeof(struct flow), REFUSED};
+    KEYS, 1, sizeof(struct flow), REFUSED, false};
 /* clang-format on */
 
 struct given_flow {
