@@ -21,6 +21,7 @@
  *     gravity_f = grad of the weight, less that of the surface, over rho_f
  * update_acceleration  where there are grains
  *     g = A(gravity_f - alpha_f grad p)
+ * still_find, still_guess    with "exact", where grains rest (still.h)
  * update_viscosity
  *     eta_f = both phases in series, eta_1 of the shear rate of u^n and of p
  * advect_momentum      away from the band

@@ -4,29 +4,24 @@
 #include <math.h>
 #include <string.h>
 
-#include "talus/strain.h"
 #include "talus/two_phase/state.h"
+#include "talus/two_phase/yield.h"
 
 /* Still grains are slower than this part of what gravity gives in a step. */
 #define SLOW 0.1
 /* Part of the last change of g that is expected again. */
 #define EXPECTED 0.9
-/* Stress within this part of the yield stress has reached it. */
-#define REACHED 1e-6
 
 /* Set wet and held [nfaces_all] to 1 on faces that can yield, and on those of
  * them that do not, else to 0. */
 static void find_held(const struct two_phase *sim, double *wet, double *held) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct yield *yield = &sim->yield;
-  double *face[] = {wet, held}, *rows[STRAIN_ROWS];
-  for (int k = 0; k < yield->nrows; k++) rows[k] = yield->s[k]->v;
+  double *face[] = {wet, held};
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double most = (1 - REACHED) * yield->tau_y->v[f];
-      wet[f] = most > 0;
-      held[f] = most > 0 &&
-                strain_norm_squared(yield->nrows, rows, d, f) < most * most;
+      wet[f] = yield->tau_y->v[f] > 0;
+      held[f] = wet[f] > 0 && !yield_is_reached(yield, d, f);
     }
   }
   mesh_fill_faces(mesh, 2, face);

@@ -391,17 +391,21 @@ double yield_advance(struct two_phase *sim, double dt, const double *r,
   return most > 0 ? sum[0] * sum[2] / most : 0;
 }
 
+bool yield_is_reached(const struct yield *yield, int d, int32_t f) {
+  double *rows[STRAIN_ROWS];
+  const double least = (1 - REACHED) * yield->tau_y->v[f];
+  for (int k = 0; k < yield->nrows; k++) rows[k] = yield->s[k]->v;
+  return least > 0 &&
+         strain_norm_squared(yield->nrows, rows, d, f) >= least * least;
+}
+
 void yield_find_state(struct two_phase *sim, double *state) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct yield *yield = &sim->yield;
-  double *rows[STRAIN_ROWS];
   double *flows = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
-  for (int k = 0; k < yield->nrows; k++) rows[k] = yield->s[k]->v;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double least = (1 - REACHED) * yield->tau_y->v[f];
-      flows[f] = least > 0 &&
-                 strain_norm_squared(yield->nrows, rows, d, f) >= least * least;
+      flows[f] = yield_is_reached(yield, d, f);
     }
   }
   mesh_fill_faces(mesh, 1, &flows);

@@ -74,6 +74,8 @@ void yield_update(struct two_phase *sim, double *const u[DIM]);
  * force div(m s^n) that it needs besides, force[e] [nleaves]. Collective. */
 void yield_linearise(struct two_phase *sim, double dt, double *r, double *eta,
                      double *const force[DIM]);
+/* Return whether the stress at face f of axis d has reached a yield stress. */
+bool yield_is_reached(const struct yield *yield, int d, int32_t f);
 /* Set state [nleaves] to the part of the sides of a leaf whose stress has
  * reached the yield stress: 0 where grains are held, 1 where they flow, 0 in
  * gas. Collective. */
