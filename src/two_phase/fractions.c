@@ -226,7 +226,8 @@ static void set_back(struct two_phase *sim) {
 void fractions_synchronise(struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   sim->c_before = scratch_take_one(&sim->scratch, FIELD_CELL, "c_before");
-  memcpy(sim->c_before, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
+  field_fill(mesh, sim->c);
+  memcpy(sim->c_before, sim->c->v, (size_t)mesh->ncells * sizeof(double));
   if (sim->params->single_phase || sim->model.dt == 0) return;
   advance_tracer(sim, 0.5 * sim->model.dt, sim->u_f->v, NULL, sim->c);
   if (mesh_max(mesh, vof_excess(mesh, sim->c->v)) <= VOF_EMPTY) return;

@@ -70,6 +70,40 @@ static double leaf_potential(const struct mesh *mesh, const double *c,
   return potential;
 }
 
+/* Sum up the grains that were in and around leaf i before c was synchronised,
+ * and their momentum. u is filled. */
+static double grains_around(const struct two_phase *sim, int32_t i,
+                            double momentum[DIM]) {
+  const int32_t *stencil = sim->grid.mesh->stencil[i];
+  double grains = 0;
+  for (int e = 0; e < DIM; e++) momentum[e] = 0;
+  for (int s = 0; s < NSTENCIL; s++) {
+    const double c = max2(sim->c_before[stencil[s]], 0);
+    grains += c;
+    for (int e = 0; e < DIM; e++) momentum[e] += c * sim->u[e]->v[stencil[s]];
+  }
+  return grains;
+}
+
+/* Return |u|^2 of the grains of leaf i. Those that have entered as c was
+ * synchronised bring the velocity of the grains around: the leaf may have held
+ * gas alone, which moves otherwise. */
+static double speed_squared(const struct two_phase *sim,
+                            const double density[2], int32_t i) {
+  const double c = sim->c->v[i];
+  const double entered = sim->c_before ? max2(c - sim->c_before[i], 0) : 0;
+  const double rho = c * density[0] + (1 - c) * density[1];
+  double momentum[DIM], sum = 0;
+  const double around = entered > 0 ? grains_around(sim, i, momentum) : 0;
+  for (int e = 0; e < DIM; e++) {
+    double u = sim->u[e]->v[i];
+    if (around > 0)
+      u += entered * density[0] / rho * (momentum[e] / around - u);
+    sum += u * u;
+  }
+  return sum;
+}
+
 static void measure_sums(const struct two_phase *sim, const double *c,
                          struct diagnostics *diagnostics) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -89,7 +123,7 @@ static void measure_sums(const struct two_phase *sim, const double *c,
     sum_add(&gas, density[1] * (0.5 * u2 * (all - v) - all * whole + grains));
     if (c[i] == 0) continue;
     sum_add(&volume, v);
-    sum_add(&kinetic, 0.5 * density[0] * u2 * v);
+    sum_add(&kinetic, 0.5 * density[0] * speed_squared(sim, density, i) * v);
     sum_add(&potential, -density[0] * grains);
     if (c[i] > 0.5) fastest = max2(fastest, u2);
   }
@@ -120,6 +154,7 @@ double diagnostics_flowing(struct two_phase *sim) {
 double diagnostics_gas(const struct two_phase *sim) {
   struct diagnostics diagnostics;
   field_fill(sim->grid.mesh, sim->c);
+  field_fill_many(sim->grid.mesh, DIM, sim->u);
   measure_sums(sim, sim->c->v, &diagnostics);
   return diagnostics.gas;
 }
@@ -128,6 +163,7 @@ void diagnostics_energy(const struct two_phase *sim, double *kinetic,
                         double *potential) {
   struct diagnostics diagnostics;
   field_fill(sim->grid.mesh, sim->c);
+  field_fill_many(sim->grid.mesh, DIM, sim->u);
   measure_sums(sim, sim->c->v, &diagnostics);
   *kinetic = diagnostics.kinetic;
   *potential = diagnostics.potential;
@@ -139,7 +175,7 @@ void diagnostics_measure(const struct two_phase *sim,
   const double *c = sim->c->v;
   bool *heap = MEM_NEW(bool, (size_t)mesh->nleaves);
   *diagnostics = (struct diagnostics){.heap = heap};
-  diagnostics->shear_rate = closure_fields_shear_rate(sim); /* fills c */
+  diagnostics->shear_rate = closure_fields_shear_rate(sim); /* fills c, u */
   measure_sums(sim, c, diagnostics);
   droplets_find(mesh, c, heap, &diagnostics->droplets);
   outline_measure(mesh, c, heap, outline_axis(sim->params->gravity),

@@ -412,6 +412,41 @@ START_TEST(layers_add_up_to_the_heap) {
 }
 END_TEST
 
+static double upper_half(void *context, const double x[3]) {
+  (void)context;
+  return x[DIM - 1] - 0.5;
+}
+
+/* Grains that sink into a row of gas which moves ten times as fast keep the
+ * speed that they had, but for what the mass of the gas does: 3e-3 of it, in
+ * 1/16 of the grains. */
+START_TEST(grains_that_enter_gas_keep_their_speed) {
+  struct params params = box_params(3);
+  params.shape = (struct function){upper_half, NULL};
+  struct two_phase *sim = sim_start(&params);
+  const struct mesh *mesh = sim->grid.mesh;
+  struct diagnostics d;
+  double *u_f = sim->u_f->v;
+  for (int32_t f = mesh->face_begin[DIM - 1]; f < mesh->nfaces; f++) {
+    u_f[f] = mesh->face_patch[f] < 0 ? -1 : 0;
+  }
+  mesh_fill_faces(mesh, 1, &u_f);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    sim->u[0]->v[i] = sim->c->v[i] > 0 ? 0 : 10;
+    sim->u[DIM - 1]->v[i] = sim->c->v[i] > 0 ? -1 : 0;
+  }
+  for (int e = 0; e < DIM; e++) mesh_touch(mesh, sim->u[e]->v);
+  sim->model.dt = 1.0 / 16;
+  fractions_synchronise(sim);
+  diagnostics_measure(sim, &d);
+  fractions_desynchronise(sim);
+  const double kinetic = d.kinetic, volume = d.volume;
+  diagnostics_free(&d);
+  two_phase_destroy(sim);
+  ck_assert_double_le(fabs(kinetic / (0.5 * volume) - 1), 5e-4);
+}
+END_TEST
+
 Suite *diagnostics_suite(void);
 /* Grains above the middle of a box are at their yield stress. */
 START_TEST(flowing_is_the_part_at_its_yield_stress) {
@@ -462,6 +497,7 @@ Suite *diagnostics_suite(void) {
   tcase_add_test(tcase, the_volume_is_good_to_the_last_digits);
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("layers");
+  tcase_add_test(tcase, grains_that_enter_gas_keep_their_speed);
   tcase_add_test(tcase, layers_add_up_to_the_heap);
   tcase_set_timeout(tcase, 60);
   suite_add_tcase(suite, tcase);

@@ -89,7 +89,8 @@ struct two_phase {
   struct field *u_old[DIM];          /* u^n while u is being advanced */
   struct field *u_half;   /* u_f^{n+1/2}, then u_f^n; scratch within a step */
   struct scratch scratch; /* for stages */
-  double *c_before; /* c while it is synchronised (fractions.h), else NULL */
+  double *c_before;       /* c of before, filled, while c is synchronised
+                             (fractions.h), else NULL */
 
   /* For output, on demand (closure_fields.h) */
   struct field *shear_rate, *stress;
