@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_fluid_grains.h"
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "two_fluid_sets.h"
+
+double two_fluid_pressure(const struct two_fluid_closure *c, double phi,
+                          const struct two_fluid_frozen *with, double *slope) {
+  const struct two_fluid_slope p =
+      c->set == TWO_FLUID_KTGF ? two_fluid_ktgf_pressure(c, phi, with)
+                               : two_fluid_shearing_pressure(c, phi, with);
+  if (slope != NULL) *slope = p.slope;
+  return p.value;
+}
+
+double two_fluid_solid_fraction(const struct two_fluid_closure *c, double p,
+                                const struct two_fluid_frozen *with,
+                                double from, double guess) {
+  enum { MOST = 200 };
+  double low = from, high = INFINITY, phi = fmax(from, guess);
+  for (int k = 0; k < MOST; k++) {
+    double slope;
+    const double miss = two_fluid_pressure(c, phi, with, &slope) - p;
+    if (miss > 0) high = phi;
+    if (miss < 0) low = phi;
+    double next = slope > 0 ? phi - miss / slope : INFINITY;
+    if (fabs(next - phi) <= 1e-14 * phi || miss == 0) return next;
+    if (!(next > low && next < high))
+      next = isinf(high) ? 2 * phi + 1e-3 : 0.5 * (low + high);
+    phi = next;
+  }
+  return phi;
+}
+
+double two_fluid_loosest(const struct two_fluid_closure *c, double phi_p) {
+  switch (c->set) {
+    case TWO_FLUID_CRITICAL_STATE:
+      return phi_p;
+    case TWO_FLUID_RAUTER:
+    case TWO_FLUID_MU_I_PHI_I:
+      return c->by.low;
+    case TWO_FLUID_KTGF:
+      break;
+  }
+  return c->param[c->frictional_pressure == TWO_FLUID_SYAMLAL
+                      ? TWO_FLUID_KT_PHI_STAR
+                      : TWO_FLUID_KT_PHI_FR];
+}
+
+double two_fluid_densest(const struct two_fluid_closure *c) {
+  return c->set == TWO_FLUID_KTGF ? c->param[TWO_FLUID_KT_PHI_MAX] : c->by.pole;
+}
+
+double two_fluid_settled(const struct two_fluid_closure *c, double p,
+                         double phi_p) {
+  const struct two_fluid_frozen rest = {.phi_p = phi_p};
+  const double low = two_fluid_loosest(c, phi_p);
+  if (!(p > 0)) return low;
+  return two_fluid_solid_fraction(c, p, &rest, low, two_fluid_densest(c));
+}
+
+struct two_fluid_stress two_fluid_stress(const struct two_fluid_closure *c,
+                                         double phi, double p_s, double gamma,
+                                         double eta_f, double Theta) {
+  return c->set == TWO_FLUID_KTGF
+             ? two_fluid_ktgf_stress(c, phi, p_s, Theta)
+             : two_fluid_shearing_stress(c, p_s, gamma, eta_f);
+}
+
+double two_fluid_capped(const struct two_fluid_stress *stress, double gamma,
+                        double gamma_r, double eta_max) {
+  const double rate = gamma_r > 0 ? sqrt(gamma * gamma + gamma_r * gamma_r)
+                                  : fmax(gamma, stress->tau_y / eta_max);
+  return fmin(stress->eta + stress->tau_y / fmax(rate, DBL_MIN), eta_max);
+}
