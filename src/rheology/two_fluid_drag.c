@@ -36,13 +36,15 @@ static double ergun(const struct two_fluid_closure *c, double phi, double u_r,
 static double wen_yu(const struct two_fluid_closure *c, double phi, double u_r,
                      double eta_f) {
   const double *v = c->param, d = v[TWO_FLUID_GRAINS_D];
-  const double a = fmax(1 - phi, LEAST_ROOM);
-  const double momentum = a * v[TWO_FLUID_FLUID_DENSITY] * d * u_r;
+  const double rho = v[TWO_FLUID_FLUID_DENSITY];
+  const double a = fmax(1 - phi, LEAST_ROOM), momentum = a * rho * d * u_r;
   const double Re = momentum > 0 ? momentum / eta_f : 0;
   const double more =
       v[TWO_FLUID_DRAG_WEN_YU_FACTOR] * pow(Re, v[TWO_FLUID_DRAG_WEN_YU_POWER]);
-  return 18 * eta_f / (d * d) * (1 + more) *
-         pow(a, -1 - v[TWO_FLUID_DRAG_WEN_YU_EXPONENT]);
+  const double viscous = 24 * eta_f * (1 + more) / (a * d);
+  const double least = v[TWO_FLUID_DRAG_WEN_YU_LEAST] * rho * u_r;
+  return 0.75 * fmax(viscous, least) / d *
+         pow(a, -v[TWO_FLUID_DRAG_WEN_YU_EXPONENT]);
 }
 
 /* Return the part of Ergun, which rises smoothly from 0 to 1. */

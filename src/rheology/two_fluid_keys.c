@@ -36,6 +36,8 @@ const struct two_fluid_key two_fluid_keys[TWO_FLUID_NKEYS] = {
         "factor of inertia in the drag of one grain"}},
     [TWO_FLUID_DRAG_WEN_YU_POWER] = {DRAG, {"wen_yu_power", "1", 0, 2, 0.687,
         "exponent of inertia in the drag of one grain"}},
+    [TWO_FLUID_DRAG_WEN_YU_LEAST] = {DRAG, {"wen_yu_least", "1", 0, 10, 0.44,
+        "least drag coefficient, of grains with Re > 1000"}},
     [TWO_FLUID_DRAG_BLEND_LOW] = {DRAG, {"blend_low", "1", 0, 1, 0.19,
         "solid fraction below which gidaspow is wen_yu"}},
     [TWO_FLUID_DRAG_BLEND_HIGH] = {DRAG, {"blend_high", "1", 0, 1, 0.21,

@@ -9,7 +9,7 @@
 Suite *two_fluid_grains_suite(void);
 
 #define EQUAL(a, b, relative) \
-  ck_assert_double_eq_tol(a, b, (relative)*fabs(b) + 1e-300)
+  ck_assert_double_eq_tol(a, b, (relative)*fabs(1. * (b)) + 1e-300)
 
 static struct two_fluid_closure closures(enum two_fluid_set set) {
   struct two_fluid_closure c;
