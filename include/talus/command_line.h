@@ -42,6 +42,8 @@ bool command_own_directory(char *directory, int size);
 int command_info(int argc, char *argv[]);
 int command_plot(int argc, char *argv[]);
 int command_rheology(int argc, char *argv[]);
+/* Take the words behind `rheology two_fluid`. */
+int command_two_fluid(int argc, char *argv[]);
 int command_help(int argc, char *argv[]);
 
 /* Print the commands, one a line. */

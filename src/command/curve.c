@@ -49,7 +49,9 @@ static int list_closures(void) {
     printf("%s %s", k > 0 ? "," : "", rheology_regularisation_name(k));
   printf(
       "\n\nrho is the density of the phase unless given. For a curve at "
-      "pressure p:\n  talus rheology NAME [p=1] [key=value ...] [--csv]\n");
+      "pressure p:\n  talus rheology NAME [p=1] [key=value ...] [--csv]\n"
+      "The closures of the two-fluid model are\n  talus rheology two_fluid "
+      "[closure=ktgf] [p=100] [key=value ...] [--csv]\n");
   return EXIT_DONE;
 }
 
@@ -290,6 +292,8 @@ static void check_regularisation(const struct rheology *rheology) {
 
 int command_rheology(int argc, char *argv[]) {
   if (argc == 0) return list_closures();
+  if (strcmp(argv[0], "two_fluid") == 0)
+    return command_two_fluid(argc - 1, argv + 1);
   const struct rheology_model *model = find_closure(argv[0]);
   if (model == NULL) refuse_closure(argv[0]);
   struct rheology rheology;
