@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "roots.h"
 #include "talus/memory.h"
 
 static const double PI = 3.14159265358979323846;
@@ -189,35 +190,27 @@ double four_state_contact_pressure(const struct four_state_closure *c,
          c->param[LEE_HUANG_RHO_D] * T * (hot.value - p_K);
 }
 
-/* Find where p = target between low, where p is less, and infinity: Newton's
- * method, halved towards the bracket where it would leave it. */
-static double invert(const struct four_state_closure *c, double target,
-                     double T, double low, double guess) {
-  enum { MOST = 200 };
-  double high = INFINITY, nu = fmax(low, guess);
-  for (int k = 0; k < MOST; k++) {
-    double slope;
-    const double miss = four_state_pressure(c, nu, T, &slope) - target;
-    if (miss > 0) high = nu;
-    if (miss < 0) low = nu;
-    double next = slope > 0 ? nu - miss / slope : INFINITY;
-    if (fabs(next - nu) <= 1e-14 * nu || miss == 0) return next;
-    if (!(next > low && next < high))
-      next = isinf(high) ? 2 * nu : 0.5 * (low + high);
-    nu = next;
-  }
-  return nu;
+/* Holds what p(nu) is taken with, for root_of_rising. */
+struct question {
+  const struct four_state_closure *c;
+  double T;
+};
+
+static double pressure_of(double nu, double *slope, const void *context) {
+  const struct question *of = context;
+  return four_state_pressure(of->c, nu, of->T, slope);
 }
 
 double four_state_solid_fraction(const struct four_state_closure *c, double p,
                                  double T, double from, double guess) {
-  return invert(c, p, T, from, guess);
+  const struct question of = {c, T};
+  return root_of_rising(pressure_of, &of, p, from, guess);
 }
 
 double four_state_packed(const struct four_state_closure *c, double p) {
-  return p > 0 ? invert(c, p, 0, c->param[LEE_HUANG_NU_MIN],
-                        c->param[LEE_HUANG_NU_0])
-               : c->param[LEE_HUANG_NU_MIN];
+  const double low = c->param[LEE_HUANG_NU_MIN];
+  if (!(p > 0)) return low;
+  return four_state_solid_fraction(c, p, 0, low, c->param[LEE_HUANG_NU_0]);
 }
 
 double four_state_elastic(const struct four_state_closure *c, double nu) {

@@ -34,3 +34,22 @@ double root_between(double (*f)(double, void *), void *context, double low,
   gsl_root_fsolver_free(solver);
   return root;
 }
+
+double root_of_rising(double (*f)(double x, double *slope, const void *context),
+                      const void *context, double target, double low,
+                      double guess) {
+  enum { MOST = 200 };
+  double high = INFINITY, x = fmax(low, guess);
+  for (int k = 0; k < MOST; k++) {
+    double slope;
+    const double miss = f(x, &slope, context) - target;
+    if (miss > 0) high = x;
+    if (miss < 0) low = x;
+    double next = slope > 0 ? x - miss / slope : INFINITY;
+    if (fabs(next - x) <= 1e-14 * x || miss == 0) return next;
+    if (!(next > low && next < high))
+      next = isinf(high) ? 2 * x + 1e-3 : 0.5 * (low + high);
+    x = next;
+  }
+  return x;
+}

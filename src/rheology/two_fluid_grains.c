@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "roots.h"
 #include "two_fluid_sets.h"
 
 double two_fluid_pressure(const struct two_fluid_closure *c, double phi,
@@ -16,23 +17,22 @@ double two_fluid_pressure(const struct two_fluid_closure *c, double phi,
   return p.value;
 }
 
+/* Holds what P(phi) is taken with, for root_of_rising. */
+struct question {
+  const struct two_fluid_closure *c;
+  const struct two_fluid_frozen *with;
+};
+
+static double pressure_of(double phi, double *slope, const void *context) {
+  const struct question *of = context;
+  return two_fluid_pressure(of->c, phi, of->with, slope);
+}
+
 double two_fluid_solid_fraction(const struct two_fluid_closure *c, double p,
                                 const struct two_fluid_frozen *with,
                                 double from, double guess) {
-  enum { MOST = 200 };
-  double low = from, high = INFINITY, phi = fmax(from, guess);
-  for (int k = 0; k < MOST; k++) {
-    double slope;
-    const double miss = two_fluid_pressure(c, phi, with, &slope) - p;
-    if (miss > 0) high = phi;
-    if (miss < 0) low = phi;
-    double next = slope > 0 ? phi - miss / slope : INFINITY;
-    if (fabs(next - phi) <= 1e-14 * phi || miss == 0) return next;
-    if (!(next > low && next < high))
-      next = isinf(high) ? 2 * phi + 1e-3 : 0.5 * (low + high);
-    phi = next;
-  }
-  return phi;
+  const struct question of = {c, with};
+  return root_of_rising(pressure_of, &of, p, from, guess);
 }
 
 double two_fluid_loosest(const struct two_fluid_closure *c, double phi_p) {

@@ -33,6 +33,29 @@ START_TEST(end_nearer_to_a_root_stands_for_one_that_is_not_there) {
 }
 END_TEST
 
+/* Gives 0 up to 1, then a pole of fifth order at 2 of which the line that
+ * touches at 1.999 is left. */
+static double kinked(double x, double *slope, const void *context) {
+  (void)context;
+  const double at = fmin(x, 1.999), room = 2 - at;
+  *slope = x > 1 ? (1 + 5 * (at - 1) / room) / pow(room, 5) : 0;
+  const double f = x > 1 ? (at - 1) / pow(room, 5) : 0;
+  return f + fmax(x - 1.999, 0) * *slope;
+}
+
+/* From guesses below the kink, above it and beyond the pole. */
+START_TEST(rising_function_is_inverted_over_kinks_and_near_poles) {
+  const double guesses[] = {0, 0.5, 1.5, 7};
+  for (double target = 1e-9; target < 1e20; target *= 10)
+    for (int k = 0; k < 4; k++) {
+      double slope;
+      const double x = root_of_rising(kinked, NULL, target, 0, guesses[k]);
+      ck_assert_double_eq_tol(kinked(x, &slope, NULL), target,
+                              1e-12 * target + 1e-13 * slope);
+    }
+}
+END_TEST
+
 START_TEST(error_of_gsl_ends_the_program) {
   rheology_begin();
   root_between(broken_inside, NULL, -2, 3);
@@ -44,6 +67,7 @@ Suite *roots_suite(void) {
   TCase *tcase = tcase_create("roots");
   tcase_add_test(tcase, root_is_found_to_the_last_bits);
   tcase_add_test(tcase, end_nearer_to_a_root_stands_for_one_that_is_not_there);
+  tcase_add_test(tcase, rising_function_is_inverted_over_kinks_and_near_poles);
   tcase_add_exit_test(tcase, error_of_gsl_ends_the_program, EXIT_SYSTEM);
   suite_add_tcase(suite, tcase);
   return suite;
