@@ -185,7 +185,12 @@ static void read_key(struct case_file *file, const char *closure,
                  "it out, or take \"papanastasiou\" or "
                  "\"bercovier_engelman\"",
                  path, value);
-  rheology_set(&phase->rheology, known->name, value);
+  if (rheology_set(&phase->rheology, known->name, value) != 0)
+    read_fail_at(file, path,
+                 "%s.density = %g: %s, which it is unless the case gives "
+                 "another, must be from %g to %g: take other units, or give it",
+                 phase == &file->params.gas ? "gas" : "grains", value, path,
+                 known->min, known->max);
   if (!given && strcmp(known->name, "cohesion") == 0) return;
   /* Nothing depends on the shear rate of a regularisation that is not used. */
   if (rate && clip) return;

@@ -36,6 +36,8 @@ static const struct rheology_key KEYS[] = {
 
 /* Viscosity at rest, Pa s, in place of infinity. */
 #define MOST 1e30
+/* I sqrt(p) at rest, in place of 0: sqrt(p) over it does not overflow. */
+#define AT_REST 1e-250
 
 struct lower_branch {
   double I_1;       /* its end; 0: there is none */
@@ -79,7 +81,7 @@ static void yield(const struct rheology *r, int32_t n,
   const double d_rho = param[D] * sqrt(param[RHO]);
   for (int32_t i = 0; i < n; i++) {
     const double root = sqrt(pressure[i]);
-    const double rate = at_least(shear_rate[i] * d_rho, DBL_MIN);
+    const double rate = at_least(shear_rate[i] * d_rho, AT_REST);
     if (rate < lower->I_1 * root) {
       const double logarithm = log(lower->I_1 * root / rate);
       tau_y[i] =

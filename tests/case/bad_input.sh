@@ -64,6 +64,9 @@ bad_edit not_integer 'not_integer.lua:2: domain.level = 5.5: an integer' \
 bad_edit negative_density \
   'negative_density.lua:4: grains.density = -1: a number > 0' \
   'density = 1,' 'density = -1,'
+bad_edit small_density \
+  'small_density.lua:4: grains.density = 1e-13: grains.rheology.rho, .* 1e-12 to' \
+  'density = 1,' 'density = 1e-13,'
 bad_edit no_such_limiter \
   'no_such_limiter.lua:9: solver.limiter = "min": "none", "minmod" or "gener' \
   'output =' 'solver = { limiter = "min" }, output ='

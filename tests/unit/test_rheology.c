@@ -286,8 +286,10 @@ START_TEST(rheology_at_rest_is_eta_max_where_there_is_a_yield_stress) {
                          "mu_i_power", "mu_i_well_posed", "power_law"};
   for (int i = 0; i < 6; i++) {
     struct rheology r = make(names[i]);
-    ck_assert_double_eq(viscosity(&r, 0., 2.), 1e30);
-    ck_assert_double_eq(viscosity(&r, 5e-324, 2.), 1e30);
+    for (double p = 2e-12; p < 1e12; p *= 10) {
+      assert_near(viscosity(&r, 0., p), 1e30);
+      assert_near(viscosity(&r, 5e-324, p), 1e30);
+    }
   }
 }
 END_TEST
@@ -403,6 +405,31 @@ START_TEST(rheology_lets_nan_through) {
     struct rheology r = make(names[i]);
     ck_assert_double_nan(viscosity(&r, NAN, 1.));
     ck_assert_double_nan(viscosity(&r, 1., NAN));
+  }
+}
+END_TEST
+
+/* Units 2^36 times as small: rho, p and eta are as many times as large. */
+START_TEST(rheology_does_not_depend_on_the_unit_of_mass) {
+  static const double more = 0x1p36;
+  static const char *const scaled[] = {"rho",   "rho_d", "K",      "tau_y",
+                                       "eta_0", "eta",   "eta_inf"};
+  for (int m = 0; rheology_get(m) != NULL; m++) {
+    struct rheology r = make(rheology_get(m)->name), s;
+    if (r.model->eval == NULL || r.model->limits != NULL) continue;
+    for (int i = 0; i < NEXTREME * NEXTREME; i++) {
+      const double gamma = extreme(i % NEXTREME), p = extreme(i / NEXTREME);
+      if ((p > 0 && p < 1e-200) || (gamma > 0 && gamma < 1e-200)) continue;
+      r.eta_max = 1e3;
+      const double eta = viscosity(&r, gamma, p);
+      s = r;
+      s.eta_max *= more;
+      for (unsigned k = 0; k < sizeof scaled / sizeof *scaled; k++)
+        for (int j = 0; j < r.model->nkeys; j++)
+          if (strcmp(r.model->keys[j].name, scaled[k]) == 0) s.param[j] *= more;
+      ck_assert_double_eq_tol(viscosity(&s, gamma, more * p) / more, eta,
+                              1e-13 * eta + 1e-200);
+    }
   }
 }
 END_TEST
@@ -534,6 +561,7 @@ Suite *rheology_suite(void) {
   tcase_add_test(shared, rheology_is_continuous);
   tcase_add_test(shared, rheology_cohesion_is_a_yield_stress_of_any_closure);
   tcase_add_test(shared, rheology_lets_nan_through);
+  tcase_add_test(shared, rheology_does_not_depend_on_the_unit_of_mass);
   tcase_add_test(shared, rheology_stress_grows_with_shear_rate_and_pressure);
   tcase_add_test(shared, rheology_of_an_array_is_that_of_its_elements);
   suite_add_tcase(suite, shared);
