@@ -20,7 +20,9 @@
  * in or all out when f has one sign at its vertices and centre, and f at the
  * centre is at least 1.5 times the change from there to any vertex: what f
  * hides from these points (a thread thinner than the cell in a function that is
- * flat elsewhere) is not seen.
+ * flat elsewhere) is not seen. f = 0 is outside, over a volume too, so that a
+ * function may be cut off there, max(0, f), or be 1 inside and 0 outside, which
+ * is wrong by the smallest pieces that the surface cuts.
  *
  * Accuracy of c, with H = h 2^-depth the edge of the smallest piece:
  *   plane surface                      round-off, 1e-14

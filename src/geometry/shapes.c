@@ -51,6 +51,12 @@ static int common_sign(const struct piece *p, double tolerance) {
   return sign;
 }
 
+static bool is_positive_somewhere(const struct piece *p) {
+  bool found = p->centre > 0.;
+  for (int v = 0; v < NVERTEX; v++) found = found || p->vertex[v] > 0.;
+  return found;
+}
+
 /* Return the slant (ring.h) of a piece, 0 in a plane. */
 static double slant(const struct shape *shape, const struct piece *p) {
   return shape->rings ? 0.5 * p->h / p->x[0] : 0;
@@ -77,6 +83,7 @@ static double cut_piece(const struct shape *shape, const struct piece *p) {
   double tolerance = 1e-9 * variation(p);
   int sign = common_sign(p, tolerance);
   if (sign && (residual > tolerance || norm <= 0.)) return sign > 0 ? 1. : 0.;
+  if (norm <= 0. && !is_positive_somewhere(p)) return 0.;
   if (norm <= 0.) return alpha > 0. ? 1. : alpha < 0. ? 0. : 0.5;
   return ring_volume(n, alpha, slant(shape, p));
 }

@@ -75,6 +75,7 @@ START_TEST(shape_fraction_of_a_plane_is_exact) {
       x[d] = uniform(&state);
       local -= plane.n[d] * x[d];
     }
+    if (length == 0) continue; /* no plane */
     plane.alpha = h * length * (1.2 * uniform(&state) - 0.6) - local;
     local = (plane.alpha + local) / h;
     double c = shape_fraction(plane_value, &plane, x, h, i % 4);
@@ -109,8 +110,8 @@ START_TEST(shape_fraction_of_the_largest_values_is_right) {
 END_TEST
 
 START_TEST(shape_fraction_of_a_constant_is_its_sign) {
-  double x[DIM] = {0.4, 0.3}, value[] = {-1., 1., -1e-300, INFINITY};
-  for (int k = 0; k < 3; k++)
+  double x[DIM] = {0.4, 0.3}, value[] = {-1., 1., -1e-300, 0.};
+  for (int k = 0; k < 4; k++)
     ck_assert_double_eq(shape_fraction(constant_value, &value[k], x, 0.1, 2),
                         value[k] > 0.);
   value[0] = NAN;
@@ -137,6 +138,23 @@ START_TEST(shape_fraction_of_a_box_on_cell_faces_is_exact) {
       raise_to(&error, fabs(c - inside));
     }
   ck_assert_double_le(error, 1e-14);
+}
+END_TEST
+
+static double cut_off_value(void *context, const double x[3]) {
+  return fmax(0., box_value(context, x));
+}
+
+static double one_or_zero_value(void *context, const double x[3]) {
+  return box_value(context, x) > 0. ? 1. : 0.;
+}
+
+START_TEST(shape_fraction_is_0_where_the_level_set_is) {
+  struct box box = {{0.2, 0.2, 0.2}, {0.6, 0.6, 0.6}};
+  const double exact = DIM == 2 ? 0.16 : 0.064;
+  ck_assert_double_eq_tol(total(cut_off_value, &box, 5, 3), exact, 1e-14);
+  const double skin = DIM * (DIM == 2 ? 0.8 : 0.32) / (5 * 8);
+  ck_assert_double_eq_tol(total(one_or_zero_value, &box, 5, 3), exact, skin);
 }
 END_TEST
 
@@ -216,6 +234,7 @@ Suite *shapes_suite(void) {
   tcase_add_test(tcase, shape_fraction_of_the_largest_values_is_right);
   tcase_add_test(tcase, shape_fraction_of_a_constant_is_its_sign);
   tcase_add_test(tcase, shape_fraction_of_a_box_on_cell_faces_is_exact);
+  tcase_add_test(tcase, shape_fraction_is_0_where_the_level_set_is);
   tcase_add_test(tcase, shape_fraction_of_a_column_reaches_beyond_the_domain);
   tcase_add_test(tcase, shape_fraction_of_a_box_errs_at_corners_only);
   tcase_add_test(tcase, shape_fraction_of_a_sphere_converges_with_third_order);
