@@ -78,6 +78,7 @@ enum two_fluid_param {
   TWO_FLUID_CS_PHI_P_LOW,
   TWO_FLUID_CS_PHI_P_HIGH,
   TWO_FLUID_CS_P_LEAST,
+  TWO_FLUID_CS_RELAX,
   TWO_FLUID_RA_MU_1, /* RA: rauter */
   TWO_FLUID_RA_MU_2,
   TWO_FLUID_RA_J_0,

@@ -70,6 +70,8 @@ const struct two_fluid_key two_fluid_keys[TWO_FLUID_NKEYS] = {
         "nor rise above this"}},
     [TWO_FLUID_CS_P_LEAST] = {CS, {"p_least", "Pa", 1e-09, 1e+06, 0.5,
         "least pressure that counts in J of delta"}},
+    [TWO_FLUID_CS_RELAX] = {CS, {"relax", "1", 0, 1e30, 1,
+        "rate at which X builds up, over phi times the shear rate"}},
     [TWO_FLUID_RA_MU_1] = {RA, {"mu_1", "1", 0, 10, 0.32,
         "friction coefficient of slow shear"}},
     [TWO_FLUID_RA_MU_2] = {RA, {"mu_2", "1", 0, 10, 0.7,

@@ -34,7 +34,8 @@ static struct two_fluid_slope johnson_jackson(const struct two_fluid_closure *c,
   const double room = c->param[TWO_FLUID_KT_PHI_MAX] - phi;
   (void)unused;
   if (x <= 0) return (struct two_fluid_slope){0, 0};
-  const double p = c->param[TWO_FLUID_KT_STIFFNESS] * x * x / pow(room, 5);
+  const double p =
+      c->param[TWO_FLUID_KT_STIFFNESS] * x * x / two_fluid_fifth(room);
   return (struct two_fluid_slope){p, p * (2 / x + 5 / room)};
 }
 

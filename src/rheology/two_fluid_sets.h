@@ -10,6 +10,8 @@ struct two_fluid_slope {
   double value, slope;
 };
 
+static inline double two_fluid_fifth(double x) { return x * x * x * x * x; }
+
 /* Return f at phi, and beyond `end` the line that touches f there. */
 static inline struct two_fluid_slope two_fluid_beyond(
     struct two_fluid_slope (*f)(const struct two_fluid_closure *c, double phi,

@@ -37,7 +37,7 @@ static struct two_fluid_slope remembering(const struct two_fluid_closure *c,
   const double x = phi - fmin(phi_p, by->pole - PLASTIC_ROOM);
   const double room = by->pole - phi;
   if (x <= 0) return (struct two_fluid_slope){0, 0};
-  const double p = by->stiffness * x * x * x / pow(room, 5);
+  const double p = by->stiffness * x * x * x / two_fluid_fifth(room);
   return (struct two_fluid_slope){p, p * (3 / x + 5 / room)};
 }
 
@@ -72,6 +72,14 @@ double two_fluid_shear(const struct two_fluid_closure *c, double gamma,
   return by->viscous * eta_f * gamma + by->inertial * rho * d_gamma * d_gamma;
 }
 
+double two_fluid_relaxed_shear(const struct two_fluid_closure *c, double before,
+                               double X_new, double phi, double gamma,
+                               double dt) {
+  if (c->set != TWO_FLUID_CRITICAL_STATE || X_new <= before) return X_new;
+  const double strain = c->param[TWO_FLUID_CS_RELAX] * phi * gamma * dt;
+  return before - (X_new - before) * expm1(-strain);
+}
+
 struct two_fluid_stress two_fluid_shearing_stress(
     const struct two_fluid_closure *c, double p_s, double gamma, double eta_f) {
   const struct two_fluid_shearing *by = &c->by;
@@ -98,7 +106,7 @@ double two_fluid_plastic_of(const struct two_fluid_closure *c, double phi,
                             double p) {
   if (c->set != TWO_FLUID_CRITICAL_STATE) return phi;
   const double room = fmax(c->by.pole - phi, MARGIN);
-  return fmax(phi - cbrt(p * pow(room, 5) / c->by.stiffness), 0);
+  return fmax(phi - cbrt(p * two_fluid_fifth(room) / c->by.stiffness), 0);
 }
 
 double two_fluid_plastic_rate(const struct two_fluid_closure *c, double phi,

@@ -186,6 +186,24 @@ START_TEST(plastic_packing_keeps_its_bounds) {
 }
 END_TEST
 
+START_TEST(shear_pressure_builds_up_with_strain_and_falls_at_once) {
+  struct two_fluid_closure c = closures(TWO_FLUID_CRITICAL_STATE);
+  /* one step or many of a strain 0.5 phi */
+  EQUAL(two_fluid_relaxed_shear(&c, 2, 5, 0.5, 10, 0.1), 5 - 3 * exp(-0.5),
+        1e-14);
+  double X = 2;
+  for (int k = 0; k < 100; k++)
+    X = two_fluid_relaxed_shear(&c, X, 5, 0.5, 10, 1e-3);
+  EQUAL(X, 5 - 3 * exp(-0.5), 1e-13);
+  ck_assert_double_eq(two_fluid_relaxed_shear(&c, 5, 0, 0.5, 0, 1e-9), 0);
+  ck_assert_double_eq(two_fluid_relaxed_shear(&c, 1, 1, 0.5, 0, 0), 1);
+  put(&c, "critical_state", "relax", 1e30);
+  ck_assert_double_eq(two_fluid_relaxed_shear(&c, 1, 5, 0.5, 1e-3, 1e-9), 5);
+  const struct two_fluid_closure r = closures(TWO_FLUID_RAUTER);
+  ck_assert_double_eq(two_fluid_relaxed_shear(&r, 2, 5, 0.5, 1e-9, 1e-9), 5);
+}
+END_TEST
+
 START_TEST(a_prepared_dense_bed_carries_its_weight) {
   const struct two_fluid_closure c = closures(TWO_FLUID_CRITICAL_STATE);
   for (double p = 1; p < 1e4; p *= 10) {
@@ -242,6 +260,7 @@ Suite *two_fluid_shearing_suite(void) {
   tcase_add_test(tcase, stress_is_finite_at_rest_and_without_pressure);
   tcase_add_test(tcase, loose_and_dense_beds_meet_at_the_critical_state);
   tcase_add_test(tcase, plastic_packing_keeps_its_bounds);
+  tcase_add_test(tcase, shear_pressure_builds_up_with_strain_and_falls_at_once);
   tcase_add_test(tcase, a_prepared_dense_bed_carries_its_weight);
   tcase_add_test(tcase, numbers_that_contradict_are_refused);
   tcase_add_test(tcase, every_key_has_a_default_in_its_range);
