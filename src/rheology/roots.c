@@ -4,6 +4,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>
 #include <math.h>
+#include <stdbool.h>
 
 #include "talus/error.h"
 #include "talus/rheology.h"
@@ -47,12 +48,14 @@ double root_of_rising(double (*f)(double x, double *slope, const void *context),
     if (miss < 0) low = x;
     /* in ln f, which tames poles: from far above the plain method comes nearer
      * to one of fifth order by a sixth each time */
-    const double step =
-        value > 2 * target && target > 0 ? value * log(value / target) : miss;
-    double next = slope > 0 ? x - step / slope : INFINITY;
-    if (fabs(next - x) <= 1e-14 * x || miss == 0) return next;
+    const double step = value > 2 * target && target > 0
+                            ? value * (log(value) - log(target))
+                            : miss;
+    const bool moves = fabs(step) < slope * (x + 1);
+    double next = moves ? x - step / slope : INFINITY;
+    if (fabs(next - x) <= 1e-14 * x || miss == 0) return moves ? next : x;
     if (!(next > low && next < high))
-      next = isinf(high) ? 2 * x + 1e-3 : 0.5 * (low + high);
+      next = isinf(high) ? 2 * x + 1 : 0.5 * (low + high);
     x = next;
   }
   return x;

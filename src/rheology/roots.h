@@ -13,10 +13,10 @@ double root_between(double (*f)(double, void *), void *context, double low,
                     double high);
 
 /*
- * Find x where f(x, &slope, context) = target, f rising without bound: Newton's
- * method, halved towards the bracket where it would leave it, to 1e-14. low:
- * any x where f is less; guess: where to begin, for convex f best a little
- * above.
+ * Find x >= 0, of order 1, where f(x, &slope, context) = target, f rising
+ * without bound: Newton's method, halved towards the bracket where it would
+ * leave it, to 1e-14. low: any x where f is less; guess: where to begin, for
+ * convex f best a little above.
  */
 double root_of_rising(double (*f)(double x, double *slope, const void *context),
                       const void *context, double target, double low,

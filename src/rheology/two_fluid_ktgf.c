@@ -109,7 +109,8 @@ struct two_fluid_stress two_fluid_ktgf_stress(const struct two_fluid_closure *c,
  * where nothing holds it. */
 static double quadratic(double a, double b, double B) {
   const double root = sqrt(b * b + 4 * a * B);
-  if (b >= 0) return B > 0 ? 2 * B / (b + root) : 0;
+  if (!(B > 0) && b >= 0) return 0;
+  if (b >= 0) return b + root > 0 ? 2 * B / (b + root) : INFINITY;
   return a > 0 ? (root - b) / (2 * a) : INFINITY;
 }
 
@@ -142,6 +143,7 @@ double two_fluid_temperature(const struct two_fluid_closure *c, double phi,
     b -= A.p * rub;
     C = frictional(c, phi).value * (rub - div);
   }
-  const double s = C > 0 ? cubic(A.loss, b, B, C) : quadratic(A.loss, b, B);
-  return fmin(s * s, du2 / 3);
+  const double root = C > 0 ? cubic(A.loss, b, B, C) : quadratic(A.loss, b, B);
+  const double s = fmin(root, sqrt(du2 / 3));
+  return s * s;
 }

@@ -94,12 +94,12 @@ struct two_fluid_stress two_fluid_shearing_stress(
     return (struct two_fluid_stress){more * d * root / (I + by->number_0),
                                      tau_y, 0};
   }
-  /* J p/gamma = X/gamma */
+  /* (mu - mu_1) p/gamma = more p (X/gamma)/(X + J_0 p) */
   const double per_rate =
       by->viscous * eta_f + by->inertial * rho * d * d * gamma;
-  const double J = gamma * per_rate / p_s;
-  return (struct two_fluid_stress){more * per_rate / (J + by->number_0), tau_y,
-                                   0};
+  return (struct two_fluid_stress){
+      more * per_rate * p_s / (gamma * per_rate + by->number_0 * p_s), tau_y,
+      0};
 }
 
 double two_fluid_plastic_of(const struct two_fluid_closure *c, double phi,
@@ -125,5 +125,5 @@ double two_fluid_plastic(const struct two_fluid_closure *c, double phi_p,
                          double rate, double dt) {
   const double low = fmin(phi_p, c->param[TWO_FLUID_CS_PHI_P_LOW]);
   const double high = fmax(phi_p, c->param[TWO_FLUID_CS_PHI_P_HIGH]);
-  return fmin(fmax(phi_p * exp(rate * dt), low), high);
+  return fmin(fmax(phi_p * exp(fmin(rate * dt, 100)), low), high);
 }

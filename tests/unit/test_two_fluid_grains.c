@@ -2,9 +2,11 @@
 #include "talus/two_fluid_grains.h"
 
 #include <check.h>
+#include <fenv.h>
 #include <math.h>
 
 #include "talus/two_fluid_drag.h"
+#include "talus/two_fluid_ktgf.h"
 
 Suite *two_fluid_grains_suite(void);
 
@@ -101,6 +103,48 @@ START_TEST(settled_beds_carry_their_load) {
 }
 END_TEST
 
+/* Call every function at a state, so that they raise what they do. */
+static double all(const struct two_fluid_closure *c, double phi, double gamma,
+                  double p, double div) {
+  const double eta_f = two_fluid_viscosity(c, gamma);
+  const double K = two_fluid_drag(c, phi, gamma, eta_f);
+  const double Theta =
+      two_fluid_temperature(c, phi, 0.5 * gamma * gamma, div, p > 1 ? K : 0, 1);
+  const struct two_fluid_frozen with = {0.54, two_fluid_shear(c, gamma, eta_f),
+                                        Theta};
+  const struct two_fluid_stress tau =
+      two_fluid_stress(c, phi, p, gamma, eta_f, Theta);
+  const double rate = two_fluid_plastic_rate(c, phi, p, gamma, eta_f);
+  double sum =
+      two_fluid_pore_viscosity(c, phi, eta_f) +
+      two_fluid_pore_shear_rate(phi, K, gamma, eta_f) +
+      two_fluid_capped(&tau, gamma, 0, 1e7) +
+      two_fluid_capped(&tau, gamma, 1e-3, 1e7) +
+      two_fluid_pressure(c, phi, &with, NULL) + two_fluid_settled(c, p, 0.54) +
+      two_fluid_plastic(c, 0.54, rate, 1) + two_fluid_plastic_of(c, phi, p) +
+      two_fluid_relaxed_shear(c, 1, with.X, phi, gamma, 1);
+  if (p > 0) sum += two_fluid_solid_fraction(c, p, &with, 0, phi);
+  return sum;
+}
+
+/* Debug builds trap them. */
+START_TEST(no_state_divides_by_zero_or_overflows) {
+  const double phis[] = {0, 1e-300, 1e-12, 1e-3, 0.2, 0.5, 0.585, 0.63, 0.99};
+  const double rates[] = {0, 1e-300, 1e-12, 1e-3, 1, 1e6};
+  const double loads[] = {0, 1e-300, 1e-6, 1, 1e5, 1e12};
+  struct two_fluid_closure c = closures(_i % NSETS);
+  c.production = (enum two_fluid_production)(_i / NSETS);
+  feclearexcept(FE_ALL_EXCEPT);
+  for (int k = 0; k < 9 * 6 * 6 * 3; k++) {
+    const double gamma = rates[k / 18 % 6];
+    const double sum =
+        all(&c, phis[k / 108], gamma, loads[k / 3 % 6], (k % 3 - 1) * gamma);
+    ck_assert(isfinite(sum));
+    ck_assert_int_eq(fetestexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW), 0);
+  }
+}
+END_TEST
+
 Suite *two_fluid_grains_suite(void) {
   Suite *suite = suite_create("two_fluid_grains");
   TCase *tcase = tcase_create("grains");
@@ -109,6 +153,8 @@ Suite *two_fluid_grains_suite(void) {
   tcase_add_loop_test(tcase, pressure_is_convex_and_rises_from_zero, 0,
                       NSETS * NWITH);
   tcase_add_loop_test(tcase, solid_fraction_inverts_pressure, 0, NSETS * NWITH);
+  tcase_add_loop_test(tcase, no_state_divides_by_zero_or_overflows, 0,
+                      2 * NSETS);
   tcase_add_test(tcase, settled_beds_carry_their_load);
   suite_add_tcase(suite, tcase);
   return suite;
