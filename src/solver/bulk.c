@@ -5,8 +5,7 @@
  *   lambda (u_c1 - u_c0) / h + lambda sum_(d != c) du_d/dx_d,
  * du_d/dx_d being the mean over both nodes as in viscous.h. Conductances l are
  * to lambda what w are to eta, merged in the same way; the first part is in the
- * diagonal, and no node couples to itself by the second. So what these stresses
- * add is found apart from the loops of sweep.c, which need no other copy. */
+ * diagonal, and no node couples to itself by the second. */
 #include <string.h>
 
 #include "levels.h"
@@ -57,36 +56,4 @@ void bulk_set(struct hierarchy *h, const double *eta_f, const double *kappa_f,
     plan_run_float(&h->level[l].add, NFACE, h->bulk, true);
     merge_sides(h, l);
   }
-}
-
-/* 4 h times the sum of du_d/dx_d, d != c, on side f of node i; f is of axis c.
- */
-static double divergence_along(const struct hierarchy *h, int32_t i, int f) {
-  const int c = f >> 1, upper = f & 1;
-  double sum = 0;
-  for (int d = 0; d < DIM; d++) {
-    const double *v = h->e[d];
-    if (d == c) continue;
-    sum += v[h->neighbour[2 * d + 1][i]] - v[h->neighbour[2 * d][i]] +
-           v[h->corner[corner_entry(c, upper, d, 1)][i]] -
-           v[h->corner[corner_entry(c, upper, d, 0)][i]];
-  }
-  return sum;
-}
-
-double bulk_pull(const struct hierarchy *h, int32_t i, int c) {
-  double sum = 0;
-  for (int f = 2 * c; f <= 2 * c + 1; f++) {
-    const double lambda = (double)h->bulk[f][i];
-    sum += lambda * (h->e[c][h->neighbour[f][i]] +
-                     (f & 1 ? 0.25 : -0.25) * divergence_along(h, i, f));
-  }
-  return sum;
-}
-
-double bulk_flux(const struct hierarchy *h, int32_t i, int f) {
-  const double *e = h->e[f >> 1];
-  return (double)h->bulk[f][i] *
-         (e[i] - e[h->neighbour[f][i]] -
-          (f & 1 ? 0.25 : -0.25) * divergence_along(h, i, f));
 }

@@ -62,7 +62,7 @@ static void restrict_jumps(struct hierarchy *h, const struct level *level) {
       double flux =
           (velocity && normal ? 2 : 1) * w * (h->e[c][i] - h->e[c][beyond]);
       if (velocity && !normal) flux -= transposed_flux(h, jump, c);
-      if (h->has_bulk && normal) flux += bulk_flux(h, i, jump->face);
+      if (h->has_bulk && normal) flux += sweep_bulk_flux(h, i, jump->face);
       h->r[c][jump->coarse] += flux;
     }
   }

@@ -182,10 +182,6 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
  * Collective. */
 void bulk_set(struct hierarchy *h, const double *eta_f, const double *kappa_f,
               double factor);
-/* Return what lambda adds to what pulls component c of node i. */
-double bulk_pull(const struct hierarchy *h, int32_t i, int c);
-/* Return what it adds to the flux out of node i through its face f. */
-double bulk_flux(const struct hierarchy *h, int32_t i, int f);
 /* Relax run q of a level (sweep.c), the nodes of one child number. */
 void sweep_relax(struct hierarchy *h, const struct level *level, int q);
 /* Relax n nodes one by one; node [n]. */
@@ -201,6 +197,8 @@ static inline int sweep_residual_runs(int nparts) {
 void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
                          int q, int32_t first, int32_t n,
                          double (*sum)[SWEEP_BLOCK]);
+/* Return what lambda adds to the flux out of node i through its face f. */
+double sweep_bulk_flux(const struct hierarchy *h, int32_t i, int f);
 /* Find e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times
  * `factor`; e likewise, e[0] rounded and e[1] what that misses, if it is not
  * NULL. Collective. */

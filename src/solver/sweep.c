@@ -3,7 +3,8 @@
  * hierarchy.h for the formulas.
  *
  * What a node is pulled to by its neighbours is written once for `nparts`
- * components and compiled for 1 and DIM, and for each child number: siblings
+ * components, with and without what div u adds to the stress (bulk.c), and
+ * compiled for 1, DIM and both, and for each child number: siblings
  * are then a fixed number of slots away, which leaves half of the neighbours to
  * be looked up. Nodes of one child number do not see each other, so that their
  * loops may use vectors (ivdep). These loops are most of the time of a cycle.
@@ -75,24 +76,53 @@ KERNEL double transposed(const struct hierarchy *h, struct run run, int32_t i,
   return 0.25 * sum;
 }
 
+/* 4 h times the sum of du_d/dx_d, d != c, on side f of node i; f is of axis c.
+ */
+KERNEL double divergence_along(const struct hierarchy *h, struct run run,
+                               int32_t i, int f) {
+  const int c = f >> 1, upper = f & 1;
+  double sum = 0;
+#pragma GCC unroll 3
+  for (int d = 0; d < DIM; d++) {
+    const double *v = h->e[d];
+    if (d == c) continue;
+    sum += v[across(h, run, i, 2 * d + 1)] - v[across(h, run, i, 2 * d)] +
+           v[diagonal(h, run, i, c, upper, d, 1)] -
+           v[diagonal(h, run, i, c, upper, d, 0)];
+  }
+  return sum;
+}
+
+/* What lambda (bulk.c) pulls node i to. */
+KERNEL double bulk_pull(const struct hierarchy *h, struct run run, int32_t i,
+                        int c) {
+  const double lower = h->e[c][across(h, run, i, 2 * c)] -
+                       0.25 * divergence_along(h, run, i, 2 * c);
+  const double upper = h->e[c][across(h, run, i, 2 * c + 1)] +
+                       0.25 * divergence_along(h, run, i, 2 * c + 1);
+  return (double)h->bulk[2 * c][i] * lower +
+         (double)h->bulk[2 * c + 1][i] * upper;
+}
+
 /* r_i + sum of what the neighbours contribute. */
 KERNEL double pull(const struct hierarchy *h, struct run run, int32_t i, int c,
-                   int nparts) {
+                   int nparts, bool bulk) {
   double sum = h->r[c][i];
 #pragma GCC unroll 6
   for (int f = 0; f < NFACE; f++) {
     const double w = (double)h->w[f][i] * h->e[c][across(h, run, i, f)];
     sum += nparts > 1 && f >> 1 == c ? 2 * w : w;
   }
+  if (bulk) sum += bulk_pull(h, run, i, c);
   return nparts > 1 ? sum + transposed(h, run, i, c) : sum;
 }
 
 KERNEL void relax_node(struct hierarchy *h, struct run run, int32_t i,
-                       int nparts) {
+                       int nparts, bool bulk) {
   double e[DIM];
 #pragma GCC unroll 3
   for (int c = 0; c < nparts; c++) {
-    e[c] = h->inverse[c][i] * pull(h, run, i, c, nparts);
+    e[c] = h->inverse[c][i] * pull(h, run, i, c, nparts, bulk);
   }
 #pragma GCC unroll 3
   for (int c = 0; c < nparts; c++) h->e[c][i] = e[c];
@@ -100,56 +130,54 @@ KERNEL void relax_node(struct hierarchy *h, struct run run, int32_t i,
 
 /* One copy for each child number. */
 KERNEL void relax_run(struct hierarchy *h, const struct level *level, int q,
-                      int nparts) {
+                      int nparts, bool bulk) {
 #pragma GCC unroll 8
   for (int number = 0; number < NCHILD; number++) {
     const struct run run = run_of(level, run_child(number));
     if (number != q) continue;
 #pragma GCC ivdep
     for (int32_t i = run.begin; i < run.begin + run.n; i++) {
-      relax_node(h, run, i, nparts);
+      relax_node(h, run, i, nparts, bulk);
     }
   }
 }
 
 static void relax_scalar(struct hierarchy *h, const struct level *level,
                          int q) {
-  relax_run(h, level, q, 1);
+  relax_run(h, level, q, 1, false);
 }
 
 static void relax_velocity(struct hierarchy *h, const struct level *level,
                            int q) {
-  relax_run(h, level, q, DIM);
+  relax_run(h, level, q, DIM, false);
 }
 
-/* Add to e what lambda pulls node i to, once it is relaxed without. */
-static void add_bulk(struct hierarchy *h, int32_t i) {
-  double pull[DIM];
-  for (int c = 0; c < DIM; c++) pull[c] = bulk_pull(h, i, c);
-  for (int c = 0; c < DIM; c++) h->e[c][i] += h->inverse[c][i] * pull[c];
+static void relax_compressible(struct hierarchy *h, const struct level *level,
+                               int q) {
+  relax_run(h, level, q, DIM, true);
 }
 
 void sweep_relax(struct hierarchy *h, const struct level *level, int q) {
-  const int32_t begin = run_begin(level, q);
-  if (h->nparts > 1) {
-    relax_velocity(h, level, q);
-  } else {
+  if (h->nparts == 1) {
     relax_scalar(h, level, q);
-  }
-  for (int32_t i = begin; i < begin + level->nfamilies && h->has_bulk; i++) {
-    add_bulk(h, i);
+  } else if (h->has_bulk) {
+    relax_compressible(h, level, q);
+  } else {
+    relax_velocity(h, level, q);
   }
 }
 
 /* e is 0 where the inverse is. */
 KERNEL double residual(const struct hierarchy *h, struct run run, int32_t i,
-                       int c, int nparts) {
-  return pull(h, run, i, c, nparts) - h->e[c][i] / (h->inverse[c][i] + DBL_MIN);
+                       int c, int nparts, bool bulk) {
+  return pull(h, run, i, c, nparts, bulk) -
+         h->e[c][i] / (h->inverse[c][i] + DBL_MIN);
 }
 
 KERNEL void add_residuals(const struct hierarchy *h, const struct level *level,
                           int q, int32_t first, int32_t n,
-                          double (*restrict sum)[SWEEP_BLOCK], int nparts) {
+                          double (*restrict sum)[SWEEP_BLOCK], int nparts,
+                          bool bulk) {
   const int nruns = sweep_residual_runs(nparts);
 #pragma GCC unroll 8
   for (int number = 0; number < nruns; number++) {
@@ -159,7 +187,7 @@ KERNEL void add_residuals(const struct hierarchy *h, const struct level *level,
     for (int32_t k = 0; k < n; k++) {
 #pragma GCC unroll 3
       for (int c = 0; c < nparts; c++) {
-        sum[c][k] += residual(h, run, run.begin + first + k, c, nparts);
+        sum[c][k] += residual(h, run, run.begin + first + k, c, nparts, bulk);
       }
     }
   }
@@ -168,40 +196,54 @@ KERNEL void add_residuals(const struct hierarchy *h, const struct level *level,
 static void residuals_scalar(const struct hierarchy *h,
                              const struct level *level, int q, int32_t first,
                              int32_t n, double (*sum)[SWEEP_BLOCK]) {
-  add_residuals(h, level, q, first, n, sum, 1);
+  add_residuals(h, level, q, first, n, sum, 1, false);
 }
 
 static void residuals_velocity(const struct hierarchy *h,
                                const struct level *level, int q, int32_t first,
                                int32_t n, double (*sum)[SWEEP_BLOCK]) {
-  add_residuals(h, level, q, first, n, sum, DIM);
+  add_residuals(h, level, q, first, n, sum, DIM, false);
+}
+
+static void residuals_compressible(const struct hierarchy *h,
+                                   const struct level *level, int q,
+                                   int32_t first, int32_t n,
+                                   double (*sum)[SWEEP_BLOCK]) {
+  add_residuals(h, level, q, first, n, sum, DIM, true);
 }
 
 void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
                          int q, int32_t first, int32_t n,
                          double (*sum)[SWEEP_BLOCK]) {
-  if (h->nparts > 1) {
-    residuals_velocity(h, level, q, first, n, sum);
-  } else {
+  if (h->nparts == 1) {
     residuals_scalar(h, level, q, first, n, sum);
-  }
-  const int32_t begin = run_begin(level, q) + first;
-  for (int c = 0; c < h->nparts && h->has_bulk; c++) {
-    for (int32_t k = 0; k < n; k++) sum[c][k] += bulk_pull(h, begin + k, c);
+  } else if (h->has_bulk) {
+    residuals_compressible(h, level, q, first, n, sum);
+  } else {
+    residuals_velocity(h, level, q, first, n, sum);
   }
 }
 
 KERNEL void relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node,
-                        int nparts) {
+                        int nparts, bool bulk) {
   const struct run any = {.child = ANY_CHILD};
-  for (int32_t k = 0; k < n; k++) relax_node(h, any, node[k], nparts);
+  for (int32_t k = 0; k < n; k++) relax_node(h, any, node[k], nparts, bulk);
 }
 
 void sweep_relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node) {
-  if (h->nparts > 1) {
-    relax_nodes(h, n, node, DIM);
+  if (h->nparts == 1) {
+    relax_nodes(h, n, node, 1, false);
+  } else if (h->has_bulk) {
+    relax_nodes(h, n, node, DIM, true);
   } else {
-    relax_nodes(h, n, node, 1);
+    relax_nodes(h, n, node, DIM, false);
   }
-  for (int32_t k = 0; k < n && h->has_bulk; k++) add_bulk(h, node[k]);
+}
+
+double sweep_bulk_flux(const struct hierarchy *h, int32_t i, int f) {
+  const struct run any = {.child = ANY_CHILD};
+  const double *e = h->e[f >> 1];
+  return (double)h->bulk[f][i] *
+         (e[i] - e[h->neighbour[f][i]] -
+          (f & 1 ? 0.25 : -0.25) * divergence_along(h, any, i, f));
 }
