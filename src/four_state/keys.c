@@ -61,12 +61,8 @@ static const struct key KEYS[] = {
 };
 /* clang-format on */
 
-/* Keys that mean nothing to compressible grains without gas, or that the model
- * does not know (coordinates: its temperature and its divergence lack the
- * ring).
- */
-static const char *const REFUSED[] = {"grains.density", "tracers",
-                                      "coordinates", NULL};
+/* Keys that mean nothing to compressible grains without gas. */
+static const char *const REFUSED[] = {"grains.density", "tracers", NULL};
 
 const struct model_keys four_state_model_keys = {
     .name = "four_state",

@@ -79,16 +79,18 @@ static void fill_state(struct four_state *sim, const struct depths *depths,
   const struct params *params = sim->params;
   const struct mesh *mesh = sim->grid.mesh;
   const double up = params->gravity[axis] > 0 ? -1 : 1;
+  double (*fraction)(shape_level_set f, void *context, const double centre[DIM],
+                     double h, int depth) =
+      mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double x[3] = {0};
     for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
     int depth = params->level_max - mesh->level[i] + fineness;
     if (depth > 6) depth = 6;
-    const double c =
-        params->shape.eval
-            ? shape_fraction(params->shape.eval, params->shape.context,
-                             mesh->x[i], mesh->h[i], depth)
-            : 1;
+    const double c = params->shape.eval
+                         ? fraction(params->shape.eval, params->shape.context,
+                                    mesh->x[i], mesh->h[i], depth)
+                         : 1;
     double nu = sim->keys->nu_start;
     if (depths && c > 0)
       nu = depths_nu(depths,

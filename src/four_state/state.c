@@ -53,9 +53,12 @@ static double divide_mass(const struct remap *remap, const struct field *field,
                           int32_t leaf) {
   double lo[DIM], hi[DIM];
   const int32_t i = remap_box(remap, leaf, lo, hi);
+  const double edge = hi[0] - lo[0];
+  const double centre = mesh_slant(remap->mesh, i) / 6 * (1 - edge * edge);
   double value = field->v[i];
   for (int d = 0; d < DIM; d++) {
-    value += 0.5 * (lo[d] + hi[d]) * old_slope(remap, field->v, i, d);
+    const double away = 0.5 * (lo[d] + hi[d]) - (d == 0 ? centre : 0);
+    value += away * old_slope(remap, field->v, i, d);
   }
   return value;
 }
@@ -67,13 +70,14 @@ static double merge_by_mass(const struct remap *remap,
   const int32_t first = remap->map->first[leaf];
   double sum = 0, mass = 0;
   for (int32_t i = first; i < first + remap->map->count[leaf]; i++) {
-    sum += sim->nu->v[i] * field->v[i];
-    mass += sim->nu->v[i];
+    const double grains = sim->nu->v[i] * mesh_volume(remap->mesh, i);
+    sum += grains * field->v[i];
+    mass += grains;
   }
   return mass > 0 ? sum / mass : 0;
 }
 
-static const struct field_rule mass_rule = {divide_mass, remap_mean};
+static const struct field_rule mass_rule = {divide_mass, remap_content};
 static const struct field_rule grain_rule = {remap_value, merge_by_mass};
 
 static struct field *add(struct four_state *sim, const char *name,

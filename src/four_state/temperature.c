@@ -101,7 +101,7 @@ static double leaf_divergence(const struct four_state *sim, int32_t i) {
     if (min2(sim->nu->v[lo], sim->nu->v[hi]) < sim->keys->nu_vacuum) return 0;
     sum += 0.5 * (sim->u[d]->v[hi] - sim->u[d]->v[lo]);
   }
-  return mesh_leaf_slope(mesh, i, sum);
+  return mesh_leaf_slope(mesh, i, sum) + mesh_hoop(mesh, sim->u[0]->v, i);
 }
 
 /* Return D:D of a leaf: the mean over its faces by the mass they have of it. */

@@ -40,6 +40,28 @@ paste -d, <(tail -n 1 whole/series.csv | cut -d, -f5) \
   awk -F, '{ d = $1 - $2; exit !(d < 1e-6 && d > -1e-6) }' ||
   complain "three ranks have another front"
 
+# rings: restart, ranks, and a quarter of the cylinder in three dimensions
+cylinder="$root/examples/four_state_cylinder.lua cells=8 stop=2"
+ends 0 "$talus" run $cylinder -o rings --quiet
+ends 5 "$talus" run $cylinder -o rings_parts --quiet --max-steps 17
+ends 0 "$talus" run $cylinder -o rings_parts --quiet --restart
+diff <(numbers rings) <(numbers rings_parts) > output ||
+  complain "a restart changes series.csv in rings"
+ends 0 mpirun --oversubscribe -n 3 "$build/talus2d" run $cylinder \
+  -o rings_ranks --quiet
+ends 0 mpirun --oversubscribe -n 2 "$build/talus3d" run $cylinder dimension=3 \
+  -o quarter --quiet
+# close A B COLUMN BOUND: the last rows agree within this part
+close() {
+  paste -d, <(tail -n 1 "$1/series.csv" | cut -d, -f"$3") \
+    <(tail -n 1 "$2/series.csv" | cut -d, -f"$3") |
+    awk -F, -v most="$4" '{ d = $1 / $2 - 1; exit !(d < most && -d < most) }' ||
+    complain "$1 and $2 differ in column $3"
+}
+close rings rings_ranks 5 1e-4
+close rings quarter 5 0.04
+close rings quarter 6 0.04
+
 sed 's/top = "slip"/top = { "outflow", pressure = 0 }/' \
   "$root/examples/four_state_column.lua" > open.lua
 ends 2 "$talus" run open.lua level=5 -o open
