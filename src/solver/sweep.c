@@ -93,7 +93,7 @@ KERNEL double divergence_along(const struct hierarchy *h, struct run run,
   return sum;
 }
 
-/* What lambda (bulk.c) pulls node i to. */
+/* Return how lambda (bulk.c) pulls node i. */
 KERNEL double bulk_pull(const struct hierarchy *h, struct run run, int32_t i,
                         int c) {
   const double lower = h->e[c][across(h, run, i, 2 * c)] -
