@@ -25,6 +25,12 @@ struct followed {
   struct field *const *u; /* [DIM] velocity */
 };
 
+/* Return a checksum of what the case asks of the grid: criteria, levels, cap.
+ * Collective. */
+uint32_t adapt_criteria(struct grid *grid);
+/* Let the grid follow other criteria than it was made for, a round a step until
+ * it does not change any more (grid->rounds). */
+void adapt_anew(struct grid *grid);
 /* Has the surface moved `travel` cells, far enough, or have enough steps
  * passed? */
 bool adapt_is_due(const struct grid *grid, int64_t step, double travel);

@@ -36,6 +36,7 @@ struct grid {
   bool pressure_set;   /* by some face of the mesh, which is open */
   int64_t most_leaves; /* there is memory for; 0: no bound */
   double outgrown;     /* leaves wanted when there was none, else 0 */
+  int rounds;          /* of adaptation that are due, whatever has moved */
 };
 
 /* Give the layout of the case's forest. */

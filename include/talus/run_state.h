@@ -15,6 +15,7 @@ struct run_state {
   double wall_seconds; /* since the first step, over all invocations */
   int64_t snapshots;   /* written so far */
   struct csv_mark series, profile; /* how far the tables have come */
+  int64_t criteria, rounds;        /* of adaptation (adapt.h, grid.h) */
 };
 
 /* Write the checkpoint (checkpoint.h). Collective. */

@@ -296,6 +296,8 @@ static struct run *run_new(const struct params *params,
   signals_remember();
   open_files(run);
   if (options->restart && kind->renew != NULL) kind->renew(run->model);
+  if (run->model->grid->rounds > 0)
+    log_info("restart with other criteria of adaptation: the grid follows");
   run->first_step = run->model->step;
   run->wall_begin = run->wall_checkpoint = lap(run, TIME_START, begin);
   say_begin(run);

@@ -8,6 +8,7 @@
 #include <mpi.h>
 #include <string.h>
 
+#include "talus/adapt.h"
 #include "talus/checkpoint.h"
 #include "talus/error.h"
 #include "talus/forest.h"
@@ -22,7 +23,9 @@ static const struct scalar SCALARS[] = {
     {"series_rows", SCALAR_INTEGER, AT(series.rows), 0, SCALAR_MOST},
     {"series_checksum", SCALAR_INTEGER, AT(series.checksum), 0, UINT32_MAX},
     {"profile_rows", SCALAR_INTEGER, AT(profile.rows), 0, SCALAR_MOST},
-    {"profile_checksum", SCALAR_INTEGER, AT(profile.checksum), 0, UINT32_MAX}};
+    {"profile_checksum", SCALAR_INTEGER, AT(profile.checksum), 0, UINT32_MAX},
+    {"criteria", SCALAR_INTEGER, AT(criteria), 0, UINT32_MAX},
+    {"rounds", SCALAR_INTEGER, AT(rounds), 0, 1000}};
 
 enum { NLISTS = 3 };
 
@@ -40,6 +43,8 @@ void run_state_write(const char *path, struct model *model,
   const struct model_kind *kind = model->kind;
   struct scalars list[NLISTS];
   if (kind->remember != NULL) kind->remember(model);
+  state->criteria = adapt_criteria(model->grid);
+  state->rounds = model->grid->rounds;
   list_scalars(model, state, list);
   checkpoint_write(path, kind->keys->name, model->grid->mesh,
                    &model->grid->fields, NLISTS, list, parameters);
@@ -78,5 +83,7 @@ struct model *run_state_read(const char *path, const struct params *params,
       field_fill(grid->mesh, field);
   }
   if (kind->complete != NULL) kind->complete(model);
+  model->grid->rounds = (int)state->rounds;
+  if (state->criteria != adapt_criteria(model->grid)) adapt_anew(model->grid);
   return model;
 }

@@ -124,19 +124,36 @@ static void want_estimate(struct wanted *wanted,
   }
 }
 
-static void want_function(struct wanted *wanted,
-                          const struct criterion *criterion, int number) {
-  struct grid *grid = wanted->grid;
-  const struct mesh *mesh = grid->mesh;
+/* Return the raster of a criterion that is a function of position. */
+static const struct level_raster *raster_of(struct grid *grid, int number) {
   struct level_raster **raster = &grid->level_raster[number];
   if (!*raster) {
-    *raster = level_raster_new(mesh->comm, forest_layout(grid->forest),
-                               &criterion->function, grid->params->level_max);
+    *raster = level_raster_new(grid->mesh->comm, forest_layout(grid->forest),
+                               &grid->params->criterion[number].function,
+                               grid->params->level_max);
   }
+  return *raster;
+}
+
+static void want_function(struct wanted *wanted,
+                          const struct criterion *criterion, int number) {
+  const struct mesh *mesh = wanted->grid->mesh;
+  const struct level_raster *raster = raster_of(wanted->grid, number);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    int level = level_raster_most(*raster, mesh->x[i], mesh->level[i]);
+    int level = level_raster_most(raster, mesh->x[i], mesh->level[i]);
     if (level > criterion->level) level = criterion->level;
     want(wanted, i, level, level);
+  }
+}
+
+/* Ask for the coarsest level there may be; without criteria that is the finest.
+ */
+static void want_everywhere(struct wanted *wanted) {
+  const struct params *params = wanted->grid->params;
+  const bool uniform = params->ncriteria == 0;
+  const int level = uniform ? params->level_max : params->level_min;
+  for (int32_t i = 0; i < wanted->grid->mesh->nleaves; i++) {
+    want(wanted, i, level, uniform ? level : 0);
   }
 }
 
@@ -151,6 +168,7 @@ static void apply_criteria(struct wanted *wanted) {
   const struct params *params = wanted->grid->params;
   confine(wanted, CRITERION_BOTH);
   want_openings(wanted);
+  want_everywhere(wanted);
   for (int k = 0; k < params->ncriteria; k++) {
     const struct criterion *criterion = &params->criterion[k];
     confine(wanted, criterion->only);
@@ -225,8 +243,51 @@ void adapt_flags(struct grid *grid, const struct followed *followed,
   mem_free(wanted.mark);
 }
 
+static uint32_t add_bytes(uint32_t sum, const void *data, size_t n) {
+  const unsigned char *byte = data;
+  for (size_t i = 0; i < n; i++) sum = (sum ^ byte[i]) * UINT32_C(16777619);
+  return sum;
+}
+
+/* Return a checksum of the levels that a function asks for in the leaves. */
+static uint32_t sum_of_function(struct grid *grid, int number) {
+  const struct mesh *mesh = grid->mesh;
+  const struct level_raster *raster = raster_of(grid, number);
+  uint32_t sum = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int level = level_raster_most(raster, mesh->x[i], mesh->level[i]);
+    const uint32_t place = add_bytes(0, mesh->x[i], sizeof mesh->x[i]);
+    sum += add_bytes(place, &level, sizeof level);
+  }
+  MPI_CHECK(
+      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT32_T, MPI_SUM, mesh->comm));
+  return sum;
+}
+
+uint32_t adapt_criteria(struct grid *grid) {
+  const struct params *params = grid->params;
+  const double bounds[] = {params->level_min, params->level_max,
+                           params->opening_level, (double)params->max_cells};
+  uint32_t sum = add_bytes(0, bounds, sizeof bounds);
+  for (int k = 0; k < params->ncriteria; k++) {
+    const struct criterion *criterion = &params->criterion[k];
+    const double value[] = {criterion->type, criterion->only, criterion->level,
+                            criterion->width, criterion->threshold};
+    sum = add_bytes(sum, value, sizeof value);
+    if (criterion->type != CRITERION_FUNCTION) continue;
+    const uint32_t levels = sum_of_function(grid, k);
+    sum = add_bytes(sum, &levels, sizeof levels);
+  }
+  return sum;
+}
+
+void adapt_anew(struct grid *grid) {
+  grid->rounds = 2 * grid->params->level_max;
+}
+
 bool adapt_is_due(const struct grid *grid, int64_t step, double travel) {
   const struct params *params = grid->params;
+  if (grid->rounds > 0) return true;
   if (params->ncriteria == 0) return false;
   if (params->adapt_every > 0 && step % params->adapt_every == 0) {
     return true;
@@ -253,5 +314,6 @@ bool adapt_grid(struct grid *grid, const struct followed *followed) {
   if (changed) remap_fields(grid, &map);
   forest_map_destroy(&map);
   mem_free(flag);
+  grid->rounds = changed && grid->rounds > 0 ? grid->rounds - 1 : 0;
   return changed;
 }

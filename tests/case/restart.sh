@@ -98,6 +98,28 @@ same "rest on 2" yield yields
 stops 1 talus2d run $rest regularisation=clip -o capped --quiet --max-steps 3
 refused 'no values of stress_0 .* needs the .*regularisation of the first run' \
   1 talus2d run $rest -o capped --restart
+# another grid is made at once, a level in a step, though nothing moves
+still="$root/examples/rest.lua stop=1"
+cells() {
+  last "$1" 4
+}
+stops 1 talus2d run $still level=7 -o fine --quiet --max-steps 1
+stops 1 talus2d run $still level=5 -o finer --quiet --max-steps 2
+stops 1 talus2d run $still level=7 -o finer --quiet --restart --max-steps 1
+cp -r finer finest
+stops 1 talus2d run $still level=7 -o finest --quiet --restart --max-steps 1
+stops 1 talus2d run $still level=7 -o finest --quiet --restart --max-steps 3
+stops 1 talus2d run $still level=7 -o finer --quiet --restart --max-steps 4
+same "a finer grid" finer finest
+[ "$(cells finer)" -ge "$(cells fine)" ] &&
+  [ "$(cells finer)" -le $(($(cells fine) * 6 / 5)) ] ||
+  complain "level 7 on restart has $(cells finer) leaves, not $(cells fine)"
+grep -q "other criteria of adaptation" finer/run.log || complain "not said"
+sed '/adapt =/d' "$root/examples/rest.lua" > uniform.lua
+stops 1 talus2d run uniform.lua level=5 -o coarser --quiet --max-steps 2
+stops 1 talus2d run $still level=5 -o coarser --quiet --restart --max-steps 5
+stops 1 talus2d run uniform.lua level=5 -o coarser --quiet --restart --max-steps 5
+[ "$(cells coarser)" -eq 1024 ] || complain "no uniform grid on restart"
 # around an axis, where it has one row more, and on a floor that changes
 cylinder="$root/examples/cylinder.lua cells=8 stop=1 strip=5 r_i=0.02"
 for n in 1 2; do
