@@ -276,11 +276,21 @@ def compare(x, height, reference_x, reference_height):
     return integral(np.abs(h - r), fine) / integral(h, fine), scale
 
 
+def open_file(path):
+    """The HDF5 file, or an error that names it."""
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise OSError(f"{path} cannot be read ({error}): it is damaged, or "
+                      "was cut short as the disk was full; take it away to "
+                      "draw the others") from None
+
+
 class Snapshot:
     """One snapshot-*.h5: cells and the fields on them."""
 
     def __init__(self, path):
-        with h5py.File(path, "r") as f:
+        with open_file(path) as f:
             vertices, cells = f["vertices"][:], f["cells"][:]
             self.time = float(f.attrs["time"])
             self.step = int(f.attrs["step"])

@@ -55,6 +55,7 @@ void signals_catch(void) {
   struct sigaction ignore = {.sa_handler = SIG_IGN};
   sigemptyset(&ignore.sa_mask);
   sigaction(SIGPIPE, &ignore, NULL);
+  sigaction(SIGXFSZ, &ignore, NULL); /* a write that fails says so itself */
   caught = 0;
   set_handlers(end_at_once);
 }

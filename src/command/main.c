@@ -176,6 +176,16 @@ static _Noreturn void refuse_command(const char *word) {
              nearest ? "; did you mean " : "", nearest ? nearest : "");
 }
 
+/* Return the status, or another one if what was printed is lost. */
+static int check_output(int status) {
+  if (fflush(stdout) == 0 && !ferror(stdout)) return status;
+  fprintf(stderr,
+          "talus: error: cannot print all of it (%s); is there space left "
+          "where the output goes?\n",
+          strerror(errno));
+  return status == EXIT_DONE ? EXIT_SYSTEM : status;
+}
+
 int main(int argc, char *argv[]) {
   const struct command *command = argc > 1 ? find_command(argv[1]) : NULL;
   /* the script behind plot has options of its own */
@@ -191,10 +201,11 @@ int main(int argc, char *argv[]) {
   }
   if (command == NULL) refuse_command(argv[1]);
   rheology_begin();
-  if (help) return command_help(1, &argv[1]);
+  if (help) return check_output(command_help(1, &argv[1]));
   if (command->run == command_run) signals_catch();
   if (command->parallel) base_begin(&argc, &argv);
   int status = command->run(argc - 2, argv + 2);
+  if (command->run != command_run) status = check_output(status);
   if (command->parallel) base_end();
   return status;
 }

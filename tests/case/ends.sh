@@ -56,6 +56,23 @@ ends 3 'error: the run gave up after step 1.*dt = .*advection.*speed is .*at \('
 ends 0 '^state: failed: the run gave up' info wind
 ends 5 '^stopped' run heap.lua wind=1e6 -o wind --max-steps 3
 
+# What is printed into nowhere, or written beyond a quota, is said.
+for words in "check heap.lua" "info whole" "rheology mu_i d=0.1 --csv" \
+  "help case" "rheology --help"; do
+  [ -c /dev/full ] || break
+  # shellcheck disable=SC2086
+  "$build/talus" $words > /dev/full 2> output
+  status=$?
+  [ $status -eq 4 ] || complain "$words, to a full disk: exit status $status"
+  grep -q '^talus: error: cannot print all of it' output ||
+    complain "$words, to a full disk: it is not said"
+done
+(
+  ulimit -f 20
+  ends 4 'fatal: quota/.*File too large' run heap.lua -o quota --quiet
+  [ "$failures" -eq 0 ]
+) || failures=$((failures + 1))
+
 # Sizes: what is too much is refused at once
 ends 2 'heap.lua:5: domain.trees: 40000 trees in all, 32767 are allowed' \
   check heap.lua trees=1000,40
