@@ -85,12 +85,12 @@ struct four_state_numbers four_state_numbers(
 double four_state_contact_viscosity(const struct four_state_closure *closure,
                                     double p_E, double gamma);
 
-/* Return T after dt by production and collisions. DD: D:D, div: div u. lost:
- * unless NULL, gets what collisions alone have taken, J/m^3, so that
- * 3/2 rho_d nu (T' - T) = production - lost. */
+/* Return T after dt by production and collisions. DD: D:D, div: div u. damping:
+ * unless NULL, gets k = -d(dT/dt)/dT at the start, 1/s, at which they take back
+ * a small change of T; below 0 where it grows. */
 double four_state_temperature(const struct four_state_closure *closure,
                               double nu, double T, double DD, double div,
-                              double dt, double *lost);
+                              double dt, double *damping);
 
 /* Return the state, as enum rheology_state (rheology.h), from the share of p_E
  * in p and the shear rate. */

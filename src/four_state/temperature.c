@@ -42,9 +42,17 @@ static void set_numbers(const struct four_state *sim, double *kappa,
   mesh_fill(mesh, 2, (double *const[]){kappa, delta}, bc, false);
 }
 
-/* Move nu T up the gradient of nu. */
-static void diffuse_up(struct four_state *sim, double dt, const double *delta,
-                       double *flux) {
+/* Give how many times its change of T conduction must bring, as collisions take
+ * back k dt of it on the way: k dt/(1 - exp(-k dt)), with which T is steady
+ * where heat that comes is heat that is lost. */
+static double held_back(double k, double dt) {
+  const double x = k * dt;
+  return x > 1e-8 ? x / -expm1(-x) : 1;
+}
+
+/* Set flux [nfaces_all] to what moves nu T up the gradient of nu. */
+static void find_rise(const struct four_state *sim, double dt,
+                      const double *delta, double *flux) {
   const struct mesh *mesh = sim->grid.mesh;
   const double *nu = sim->nu->v, *T = sim->T->v;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
@@ -53,19 +61,24 @@ static void diffuse_up(struct four_state *sim, double dt, const double *delta,
     const int32_t donor = node[rise > 0 ? 0 : 1];
     const double store = max2(nu[donor] * T[donor], 0) / dt;
     const double most = MOST_GIVEN * store * mesh->face_h[f];
-    const double q = max2(delta[donor], 0) * rise;
+    const double q = 0.5 * max2(delta[node[0]] + delta[node[1]], 0) * rise;
     flux[f] = mesh->face_patch[f] >= 0 ? 0 : copysign(min2(fabs(q), most), q);
   }
   mesh_fill_faces(mesh, 1, &flux);
+}
+
+static void move_up(struct four_state *sim, double dt, const double *mass,
+                    const double *flux) {
+  const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     if (!four_state_has_grains(sim, i)) continue;
-    sim->T->v[i] -= dt * mesh_divergence(mesh, flux, i) / nu[i];
+    sim->T->v[i] -= dt * mesh_divergence(mesh, flux, i) / mass[i];
   }
 }
 
-/* Conduct over dt: div(dt kappa grad T) - nu T = -nu T of before. */
+/* Conduct over dt: div(dt kappa grad T) - mass T = -mass T of before. */
 static void conduct(struct four_state *sim, double dt, const double *kappa,
-                    double *alpha, double *mass, double *rhs) {
+                    const double *mass, double *alpha, double *rhs) {
   const struct mesh *mesh = sim->grid.mesh;
   const double *nu = sim->nu->v, none = sim->keys->nu_vacuum;
   double most = 0;
@@ -78,7 +91,6 @@ static void conduct(struct four_state *sim, double dt, const double *kappa,
   }
   mesh_fill_faces(mesh, 1, &alpha);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    mass[i] = max2(nu[i], LEAST_STORE);
     rhs[i] = -mass[i] * sim->T->v[i];
     most = max2(most, -rhs[i]);
   }
@@ -117,19 +129,29 @@ static double leaf_strain(const struct four_state *sim, int32_t i) {
   return 0.5 * sum / DIM;
 }
 
-/* Produce and dissipate; returns what the energy of fluctuations gains. */
-static void react(struct four_state *sim, double dt) {
+/* Produce and dissipate, and set mass to nu times what holds back a change. */
+static void react(struct four_state *sim, double dt, double *mass) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double T = max2(sim->T->v[i], 0);
-    if (four_state_has_grains(sim, i)) {
-      T = four_state_temperature(&sim->closure, sim->nu->v[i], T,
-                                 leaf_strain(sim, i), leaf_divergence(sim, i),
-                                 dt, NULL);
-      sim->T->v[i] = min2(T, sim->keys->T_max);
-    } else {
-      sim->T->v[i] = 0;
-    }
+    const double nu = sim->nu->v[i], T = max2(sim->T->v[i], 0);
+    double k = 0;
+    sim->T->v[i] =
+        four_state_has_grains(sim, i)
+            ? four_state_temperature(&sim->closure, nu, T, leaf_strain(sim, i),
+                                     leaf_divergence(sim, i), dt, &k)
+            : 0;
+    mass[i] = max2(nu, LEAST_STORE) * held_back(k, dt);
+  }
+  mesh_touch(mesh, sim->T->v);
+}
+
+/* Keep T between 0 and its bound, and at 0 in the vacuum. */
+static void bound(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double *T = &sim->T->v[i];
+    *T =
+        four_state_has_grains(sim, i) ? min2(max2(*T, 0), sim->keys->T_max) : 0;
   }
   mesh_touch(mesh, sim->T->v);
 }
@@ -141,11 +163,14 @@ void four_state_heat(struct four_state *sim, double dt) {
   double *face = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   field_fill_many(mesh, 2, (struct field *const[]){sim->nu, sim->T});
   field_fill_many(mesh, DIM, sim->u);
-  set_numbers(sim, cell[0], cell[1]);
-  diffuse_up(sim, dt, cell[1], face);
-  conduct(sim, dt, cell[0], face, cell[2], cell[3]);
   const double before = four_state_fluctuating(sim);
-  react(sim, dt);
+  double *kappa = cell[0], *delta = cell[1], *mass = cell[2];
+  set_numbers(sim, kappa, delta);
+  find_rise(sim, dt, delta, face);
+  react(sim, dt, mass);
+  move_up(sim, dt, mass, face);
+  conduct(sim, dt, kappa, mass, face, cell[3]);
+  bound(sim);
   sim->dissipated -= four_state_fluctuating(sim) - before;
   scratch_give(&sim->scratch, __func__);
 }

@@ -259,7 +259,7 @@ double four_state_contact_viscosity(const struct four_state_closure *c,
 
 double four_state_temperature(const struct four_state_closure *c, double nu,
                               double T, double DD, double div, double dt,
-                              double *lost) {
+                              double *damping) {
   const double rho = c->param[LEE_HUANG_RHO_D], d = c->param[LEE_HUANG_D];
   const struct four_state_numbers k = four_state_numbers(c, nu);
   const double A = fmax(
@@ -269,14 +269,8 @@ double four_state_temperature(const struct four_state_closure *c, double nu,
   const double end = sqrt(A / B), reach = tanh(sqrt(A * B) * pace);
   const double fall = end > 0 ? reach / end : B * pace;
   const double s_new = (s + end * reach) / (1 + s * fall);
-  if (lost != NULL) {
-    /* int s dt = 3 rho nu/B ln(cosh + s/s_end sinh), production is A times it
-     */
-    const double x = sqrt(A * B) * pace;
-    const double log_cosh = x + log1p(exp(-2 * x)) - log(2);
-    const double sum = (log_cosh + log1p(s * fall)) * 3 * rho * nu / B;
-    *lost = A * sum - 1.5 * rho * nu * (s_new * s_new - T);
-  }
+  if (damping != NULL)
+    *damping = s > 0 ? (3 * B * s - A / s) / (3 * rho * nu) : 0;
   return s_new * s_new;
 }
 

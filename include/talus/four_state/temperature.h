@@ -3,11 +3,18 @@
  *
  *   3/2 rho_d nu dT/dt = div(kappa grad T - delta grad nu) + tau_K:D - eps
  *
- * delta grad nu runs up the gradient of nu, out of leaves that must have what
- * they give: it is taken from the donor and bounded by a part of its store;
- * kappa is implicit; production and collisions are integrated exactly over dt
- * (four_state_closure.h). Then T is bounded by the key vacuum.T_max, and is 0
- * where there are no grains to speak of.
+ * Production and collisions are integrated exactly over dt, to T_r
+ * (four_state_closure.h), and heat comes to a store that they damp at the rate
+ * k = -d(dT/dt)/dT of the start,
+ *
+ *   phi nu (T - T_r) = dt/(3/2 rho_d) div(kappa grad T - delta grad nu),
+ *   phi = k dt/(1 - exp(-k dt)), 1 for k < 0,
+ *
+ * kappa implicit, delta and k of T^n: where heat that comes is heat that is
+ * lost T does not depend on dt. One after the other without phi, the error of a
+ * steady flow was of first order in dt (docs/notes/four_state.md). What delta
+ * moves is bounded by a part of the store of the donor. Then T is bounded by
+ * the key vacuum.T_max, and is 0 where there are no grains to speak of.
  */
 #ifndef TALUS_FOUR_STATE_TEMPERATURE_H
 #define TALUS_FOUR_STATE_TEMPERATURE_H
