@@ -13,8 +13,9 @@
 
 /* Rows of a symmetric tensor without trace, T, at a face of axis d:
  *   T[d] T_dd, T[e] T_de for the other axes e; in 3D, t and w being the axes
- *   after d in a circle, T[3] T_tt and T[4] T_tw, T_ww = -(T_dd + T_tt); and in
- *   rings T[STRAIN_HOOP] T_tt, t around the axis.
+ *   after d in a circle, T[3] (T_tt - T_ww)/2 and T[4] T_tw, so that both are
+ *   treated alike, T_tt, T_ww = -T_dd/2 +- T[3]; and in rings T[STRAIN_HOOP]
+ *   T_tt, t around the axis.
  */
 enum { STRAIN_ROWS = DIM == 2 ? 3 : 5, STRAIN_HOOP = 2 };
 
@@ -32,9 +33,12 @@ static inline double strain_norm_squared(int n, double *const rows[STRAIN_ROWS],
   }
   if (n == DIM) return sum + rows[d][f] * rows[d][f];
   const double a = rows[d][f];
-  const double t = rows[DIM == 2 ? STRAIN_HOOP : STRAIN_ROWS - 2][f];
-  const double tw = DIM == 2 ? 0 : rows[STRAIN_ROWS - 1][f];
-  return sum + tw * tw + a * a + t * t + a * t;
+  if (DIM == 2) {
+    const double t = rows[STRAIN_HOOP][f];
+    return sum + a * a + t * t + a * t;
+  }
+  const double t = rows[STRAIN_ROWS - 2][f], tw = rows[STRAIN_ROWS - 1][f];
+  return sum + 0.75 * a * a + t * t + tw * tw;
 }
 
 /* shear_f [nfaces] = sqrt(2 D:D) on our own faces; skin: of the mesh, or NULL;

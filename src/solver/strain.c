@@ -90,7 +90,7 @@ static void set_rows(double grad[DIM][DIM], int d, int32_t f,
   }
   if (DIM == 2) return;
   const int t = (d + 1) % DIM, w = (d + 2) % DIM;
-  rows[STRAIN_ROWS - 2][f] = grad[t][t];
+  rows[STRAIN_ROWS - 2][f] = 0.5 * (grad[t][t] - grad[w][w]);
   rows[STRAIN_ROWS - 1][f] = 0.5 * (grad[t][w] + grad[w][t]);
 }
 

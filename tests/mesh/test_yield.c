@@ -464,7 +464,7 @@ END_TEST
 
 /* T:T/2 of T = [[1, 3, 4], [3, 2, 5], [4, 5, -3]] and of [[1, 3], [3, -1]]. */
 START_TEST(the_norm_counts_all_of_the_tensor) {
-  double value[5] = {1, 3, 4, 2, 5}, *rows[STRAIN_ROWS];
+  double value[5] = {1, 3, 4, 2.5, 5}, *rows[STRAIN_ROWS];
   for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &value[k];
   const double want = DIM == 2 ? 1 + 9 : 0.5 * (1 + 4 + 9) + 9 + 16 + 25;
   ck_assert_double_eq_tol(strain_norm_squared(DIM == 2 ? 2 : 5, rows, 0, 0),
