@@ -9,11 +9,11 @@
 
 enum { SWEEPS_DOWN = 2, SWEEPS_UP = 2 };
 
-/* Relax run q of a level where e is 0 everywhere. */
-static void relax_first(struct hierarchy *h, const struct level *level, int q) {
-  const int32_t begin = run_begin(level, q);
+/* Relax the first runs of a level, up to `end`, where e is 0 everywhere. */
+static void relax_first(struct hierarchy *h, const struct level *level,
+                        int end) {
   for (int c = 0; c < h->nparts; c++) {
-    for (int32_t i = begin; i < begin + level->nfamilies; i++) {
+    for (int32_t i = level->begin; i < run_begin(level, end); i++) {
       h->e[c][i] = h->inverse[c][i] * h->r[c][i];
     }
   }
@@ -156,30 +156,33 @@ static void reflect_run(struct hierarchy *h, int l, int q) {
   }
 }
 
-/* Is everything of a colour relaxed after run q? Red and black keep the face
- * neighbours apart; for velocities, coupled across edges too, each child number
- * is a colour of its own, so that the order of nodes (and ranks) does not
- * matter. */
-static bool ends_colour(const struct hierarchy *h, int q) {
-  return h->nparts > 1 || q % HALF == HALF - 1;
+/* Return the end of the runs that are of one colour with run q, their first.
+ * Red and black keep the face neighbours apart. Velocities are coupled across
+ * edges too, so that each child number is a colour of its own; but in 3D the
+ * two that change places with the horizontal axes, 5 and 6, 1 and 2, are of one
+ * colour, so that neither axis comes first. */
+static int colour_end(const struct hierarchy *h, int q) {
+  if (h->nparts == 1) return q < HALF ? HALF : NCHILD;
+  const bool pair = DIM == 3 && (q == 2 || q == 4);
+  return pair ? q + 2 : q + 1;
 }
 
-/* Finish the relaxation of run q of a level: skin, ghosts, images. */
-static void end_run(struct hierarchy *h, int l, int q) {
+/* Finish the relaxation of the runs of a colour: skin, ghosts, images. */
+static void end_colour(struct hierarchy *h, int l, int first, int end) {
   const bool velocity = h->nparts > 1;
-  if (velocity) skin_nodes_relax(h, l, q);
-  if (ends_colour(h, q)) copy_ghosts(h, l);
-  if (velocity) reflect_run(h, l, q);
+  if (velocity) skin_nodes_relax(h, l, first, end);
+  copy_ghosts(h, l);
+  for (int q = first; q < end && velocity; q++) reflect_run(h, l, q);
   if (velocity && h->nranks > 1) reflect_run(h, l, NCHILD);
 }
 
 /* Sweep over the nodes near jumps of the coefficient. */
 static void smooth_rough(struct hierarchy *h, int l) {
   for (int k = 0; k < h->rough_sweeps; k++) {
-    for (int q = 0; q < NCHILD; q++) {
-      const int32_t *begin = h->rough_begin + l * NCHILD + q;
-      sweep_relax_nodes(h, begin[1] - begin[0], h->rough + begin[0]);
-      end_run(h, l, q);
+    for (int q = 0, end; q < NCHILD; q = end) {
+      end = colour_end(h, q);
+      sweep_relax_rough(h, l, q, end);
+      end_colour(h, l, q, end);
     }
   }
 }
@@ -187,16 +190,16 @@ static void smooth_rough(struct hierarchy *h, int l) {
 /* Sweep over the colours. The last sweep goes over all, as no residual may be
  * left on nodes relaxed last. */
 static void smooth(struct hierarchy *h, int l, int nsweeps, bool from_zero) {
-  const int nfirst = h->nparts > 1 ? 1 : HALF; /* runs that see only zeros */
   for (int k = 0; k < nsweeps; k++) {
     if (k == nsweeps - 1) smooth_rough(h, l);
-    for (int q = 0; q < NCHILD; q++) {
-      if (k == 0 && from_zero && q < nfirst) {
-        relax_first(h, &h->level[l], q);
+    for (int q = 0, end; q < NCHILD; q = end) {
+      end = colour_end(h, q);
+      if (k == 0 && from_zero && q == 0) { /* sees only zeros */
+        relax_first(h, &h->level[l], end);
       } else {
-        sweep_relax(h, &h->level[l], q);
+        sweep_relax(h, &h->level[l], q, end);
       }
-      end_run(h, l, q);
+      end_colour(h, l, q, end);
     }
   }
 }

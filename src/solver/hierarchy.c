@@ -238,22 +238,34 @@ static int64_t nvalues(const struct hierarchy *h) {
 
 static int64_t arena_length(const struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
-  const int64_t inner = nvalues(h) + h->nslots;
+  const int64_t inner = nvalues(h) + h->nslots + h->apart_room;
   const int64_t hoop = mesh_is_axisymmetric(mesh) ? mesh->nfaces_all : 0;
   const int64_t outer = DIM * ((int64_t)mesh->ncells + mesh->nfaces_all) + hoop;
   return DIM * inner > outer ? DIM * inner : outer;
+}
+
+/* Return how many nodes of a level wait for others of their colour. */
+static int64_t most_apart(const struct hierarchy *h) {
+  int64_t most = 0;
+  for (int l = 0; l < h->nlevels; l++) {
+    const int64_t n = h->level[l].nfamilies;
+    most = n > most ? n : most;
+  }
+  return DIM == 2 ? 0 : most;
 }
 
 static void allocate(struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
   const size_t nleaves = (size_t)mesh->nleaves * DIM;
   h->beyond = mem_alloc((size_t)h->nlevels, sizeof *h->beyond);
+  h->apart_room = most_apart(h);
   h->arena = MEM_NEW(double, arena_length(h));
   for (int c = 0; c < DIM; c++) {
     h->inverse[c] = MEM_NEW(double, h->nslots);
     h->e[c] = h->arena + c * nvalues(h);
     h->r[c] = h->arena + DIM * nvalues(h) + (int64_t)c * h->nslots;
   }
+  h->apart = h->arena + DIM * (nvalues(h) + h->nslots);
   h->work_cells = h->arena;
   h->work_faces = h->arena + (int64_t)DIM * mesh->ncells;
   for (int k = 0; k < 3; k++) {

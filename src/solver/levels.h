@@ -74,6 +74,7 @@ struct skin_node {
   double row[NPAIR][2][9];
   double diagonal[DIM];
   double inverse[DIM][DIM]; /* of the block of the node */
+  double next[DIM];         /* work: e once it is relaxed */
 };
 
 struct hierarchy {
@@ -112,6 +113,9 @@ struct hierarchy {
   double *inverse[DIM]; /* [nslots] 1 / diagonal, 0 if it is 0 */
   double *e[DIM];       /* [nslots + njumps + nmirrors] correction */
   double *r[DIM];       /* [nslots] residual */
+  double *apart;        /* [DIM * apart_room] e of runs that wait for the others
+                           of their colour; none in 2D */
+  int64_t apart_room;
   /* Conductance across a side of a family over that inside it, at most 1,
    * [families] */
   float *limit[NFACE];
@@ -182,10 +186,12 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
  * Collective. */
 void bulk_set(struct hierarchy *h, const double *eta_f, const double *kappa_f,
               double factor);
-/* Relax run q of a level (sweep.c), the nodes of one child number. */
-void sweep_relax(struct hierarchy *h, const struct level *level, int q);
-/* Relax n nodes one by one; node [n]. */
-void sweep_relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node);
+/* Relax the runs [first, end) of a level (sweep.c), those of one colour: all
+ * see what the others were before. */
+void sweep_relax(struct hierarchy *h, const struct level *level, int first,
+                 int end);
+/* Relax the nodes of theirs that are near jumps of the coefficient. */
+void sweep_relax_rough(struct hierarchy *h, int l, int first, int end);
 /* Count the runs whose nodes have a residual after a sweep. Those relaxed last
  * have none: black nodes of a single component; of a velocity the last child,
  * but for what its image beyond a wall has changed since. */
@@ -211,9 +217,9 @@ void rough_watch(struct hierarchy *h, double residual);
 /* Find the nodes of a skin (skin_nodes.c), NULL: none, after coefficients_set.
  */
 void skin_nodes_set(struct hierarchy *h, const struct skin *skin);
-/* Relax those of run q of level l, which have just been relaxed without
- * weights. */
-void skin_nodes_relax(struct hierarchy *h, int l, int q);
+/* Relax those of the runs [first, end) of level l, of one colour, which have
+ * just been relaxed without weights. */
+void skin_nodes_relax(struct hierarchy *h, int l, int first, int end);
 /* Add to r of parents what the weights change in the residual of level l. */
 void skin_nodes_restrict(struct hierarchy *h, int l);
 /* Solve on the trees alone (coarse.c): from h->r to h->e. */

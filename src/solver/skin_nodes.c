@@ -204,24 +204,34 @@ static inline void add_rows(const struct hierarchy *h,
   }
 }
 
-/* Relax again with weights, the relaxation without having left e = pull /
+/* Find e of a node with weights, the relaxation without having left e = pull /
  * diagonal. */
-void skin_nodes_relax(struct hierarchy *h, int l, int q) {
+static void relax_again(struct hierarchy *h, struct skin_node *node) {
+  double pull[DIM], before[DIM];
+  for (int c = 0; c < DIM; c++) {
+    before[c] = h->e[c][node->slot];
+    pull[c] = before[c] * node->diagonal[c];
+    h->e[c][node->slot] = 0;
+  }
+  add_rows(h, node, pull);
+  for (int c = 0; c < DIM; c++) {
+    h->e[c][node->slot] = before[c];
+    node->next[c] = 0;
+    for (int d = 0; d < DIM; d++) {
+      node->next[c] += node->inverse[c][d] * pull[d];
+    }
+  }
+}
+
+void skin_nodes_relax(struct hierarchy *h, int l, int first, int end) {
   if (h->nskin == 0) return;
-  const int32_t *begin = h->skin_begin + l * NCHILD + q;
-  for (int32_t k = begin[0]; k < begin[1]; k++) {
+  const int32_t *begin = h->skin_begin + l * NCHILD;
+  for (int32_t k = begin[first]; k < begin[end]; k++) {
+    relax_again(h, &h->skin_node[k]);
+  }
+  for (int32_t k = begin[first]; k < begin[end]; k++) {
     const struct skin_node *node = &h->skin_node[k];
-    double pull[DIM];
-    for (int c = 0; c < DIM; c++) {
-      pull[c] = h->e[c][node->slot] * node->diagonal[c];
-      h->e[c][node->slot] = 0;
-    }
-    add_rows(h, node, pull);
-    for (int c = 0; c < DIM; c++) {
-      for (int d = 0; d < DIM; d++) {
-        h->e[c][node->slot] += node->inverse[c][d] * pull[d];
-      }
-    }
+    for (int c = 0; c < DIM; c++) h->e[c][node->slot] = node->next[c];
   }
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Gauss-Seidel on the nodes of one child number, and their residuals. See
- * hierarchy.h for the formulas.
+/* Relaxation of the nodes of a colour, and residuals. See hierarchy.h for the
+ * formulas.
  *
  * What a node is pulled to by its neighbours is written once for `nparts`
  * components, with and without what div u adds to the stress (bulk.c), and
@@ -10,6 +10,7 @@
  * loops may use vectors (ivdep). These loops are most of the time of a cycle.
  * In 3D they take seconds to compile, so that each is compiled once. */
 #include <float.h>
+#include <string.h>
 
 #include "levels.h"
 
@@ -117,53 +118,85 @@ KERNEL double pull(const struct hierarchy *h, struct run run, int32_t i, int c,
   return nparts > 1 ? sum + transposed(h, run, i, c) : sum;
 }
 
-KERNEL void relax_node(struct hierarchy *h, struct run run, int32_t i,
-                       int nparts, bool bulk) {
+/* Where relaxed values go: of slot i to e[c][i - shift]. */
+struct target {
+  double *e[DIM];
+  int32_t shift;
+};
+
+KERNEL void relax_node(const struct hierarchy *h, struct run run, int32_t i,
+                       int nparts, bool bulk, const struct target *to) {
   double e[DIM];
 #pragma GCC unroll 3
   for (int c = 0; c < nparts; c++) {
     e[c] = h->inverse[c][i] * pull(h, run, i, c, nparts, bulk);
   }
 #pragma GCC unroll 3
-  for (int c = 0; c < nparts; c++) h->e[c][i] = e[c];
+  for (int c = 0; c < nparts; c++) to->e[c][i - to->shift] = e[c];
 }
 
 /* One copy for each child number. */
-KERNEL void relax_run(struct hierarchy *h, const struct level *level, int q,
-                      int nparts, bool bulk) {
+KERNEL void relax_run(const struct hierarchy *h, const struct level *level,
+                      int q, int nparts, bool bulk, const struct target *to) {
 #pragma GCC unroll 8
   for (int number = 0; number < NCHILD; number++) {
     const struct run run = run_of(level, run_child(number));
     if (number != q) continue;
 #pragma GCC ivdep
     for (int32_t i = run.begin; i < run.begin + run.n; i++) {
-      relax_node(h, run, i, nparts, bulk);
+      relax_node(h, run, i, nparts, bulk, to);
     }
   }
 }
 
-static void relax_scalar(struct hierarchy *h, const struct level *level,
-                         int q) {
-  relax_run(h, level, q, 1, false);
+static void relax_scalar(const struct hierarchy *h, const struct level *level,
+                         int q, const struct target *to) {
+  relax_run(h, level, q, 1, false, to);
 }
 
-static void relax_velocity(struct hierarchy *h, const struct level *level,
-                           int q) {
-  relax_run(h, level, q, DIM, false);
+static void relax_velocity(const struct hierarchy *h, const struct level *level,
+                           int q, const struct target *to) {
+  relax_run(h, level, q, DIM, false, to);
 }
 
-static void relax_compressible(struct hierarchy *h, const struct level *level,
-                               int q) {
-  relax_run(h, level, q, DIM, true);
+static void relax_compressible(const struct hierarchy *h,
+                               const struct level *level, int q,
+                               const struct target *to) {
+  relax_run(h, level, q, DIM, true, to);
 }
 
-void sweep_relax(struct hierarchy *h, const struct level *level, int q) {
-  if (h->nparts == 1) {
-    relax_scalar(h, level, q);
-  } else if (h->has_bulk) {
-    relax_compressible(h, level, q);
-  } else {
-    relax_velocity(h, level, q);
+/* Return where the values of run q of the runs [first, end) go. Runs of a
+ * velocity see each other, so that all but the last stay apart until all are
+ * relaxed. */
+static struct target target_of(const struct hierarchy *h,
+                               const struct level *level, int first, int q,
+                               int end) {
+  struct target to = {.shift = 0};
+  const bool apart = h->nparts > 1 && q < end - 1;
+  for (int c = 0; c < h->nparts; c++) {
+    to.e[c] = apart ? h->apart + (int64_t)c * h->apart_room : h->e[c];
+  }
+  if (apart) to.shift = run_begin(level, first);
+  return to;
+}
+
+void sweep_relax(struct hierarchy *h, const struct level *level, int first,
+                 int end) {
+  for (int q = first; q < end; q++) {
+    const struct target to = target_of(h, level, first, q, end);
+    if (h->nparts == 1) {
+      relax_scalar(h, level, q, &to);
+    } else if (h->has_bulk) {
+      relax_compressible(h, level, q, &to);
+    } else {
+      relax_velocity(h, level, q, &to);
+    }
+  }
+  if (h->nparts == 1 || end == first + 1) return;
+  const int64_t napart = (int64_t)(end - 1 - first) * level->nfamilies;
+  for (int c = 0; c < h->nparts; c++) {
+    memcpy(h->e[c] + run_begin(level, first), h->apart + c * h->apart_room,
+           (size_t)napart * sizeof(double));
   }
 }
 
@@ -224,19 +257,35 @@ void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
   }
 }
 
-KERNEL void relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node,
-                        int nparts, bool bulk) {
+KERNEL void relax_nodes(const struct hierarchy *h, int32_t n,
+                        const int32_t *node, int nparts, bool bulk,
+                        const struct target *to) {
   const struct run any = {.child = ANY_CHILD};
-  for (int32_t k = 0; k < n; k++) relax_node(h, any, node[k], nparts, bulk);
+  for (int32_t k = 0; k < n; k++) {
+    relax_node(h, any, node[k], nparts, bulk, to);
+  }
 }
 
-void sweep_relax_nodes(struct hierarchy *h, int32_t n, const int32_t *node) {
-  if (h->nparts == 1) {
-    relax_nodes(h, n, node, 1, false);
-  } else if (h->has_bulk) {
-    relax_nodes(h, n, node, DIM, true);
-  } else {
-    relax_nodes(h, n, node, DIM, false);
+void sweep_relax_rough(struct hierarchy *h, int l, int first, int end) {
+  const struct level *level = &h->level[l];
+  const int32_t *begin = h->rough_begin + l * NCHILD;
+  for (int q = first; q < end; q++) {
+    const struct target to = target_of(h, level, first, q, end);
+    const int32_t n = begin[q + 1] - begin[q], *node = h->rough + begin[q];
+    if (h->nparts == 1) {
+      relax_nodes(h, n, node, 1, false, &to);
+    } else if (h->has_bulk) {
+      relax_nodes(h, n, node, DIM, true, &to);
+    } else {
+      relax_nodes(h, n, node, DIM, false, &to);
+    }
+  }
+  for (int c = 0; c < h->nparts && h->nparts > 1; c++) {
+    const double *apart = h->apart + (int64_t)c * h->apart_room;
+    for (int32_t k = begin[first]; k < begin[end - 1]; k++) {
+      const int32_t i = h->rough[k];
+      h->e[c][i] = apart[i - run_begin(level, first)];
+    }
   }
 }
 
