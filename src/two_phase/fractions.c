@@ -11,10 +11,22 @@
 #include "talus/two_phase/time_step.h"
 #include "talus/vof.h"
 
-/* Arrays that the sweeps of a fraction work with: planes of its cut leaves, cc
- * (vof.h), and room for its flux. */
-struct sweep {
-  double *normal[DIM], *plane, *cc, *flux;
+/* Planes of the cut leaves of a fraction. */
+struct planes {
+  double *normal[DIM], *alpha;
+};
+
+/* A fraction that is carried over dt with u_f, and with c the velocity u. */
+struct carriage {
+  struct two_phase *sim;
+  double dt;
+  const double *u_f;
+  struct field *fraction;
+  bool with_u;
+  double *cc, *flux;          /* vof.h; flux is scratch */
+  struct planes own;          /* to be made anew; those of sim with u */
+  const struct planes *valid; /* of the fraction as it is, NULL: none */
+  const struct planes *last;  /* of the last sweep */
 };
 
 void fractions_update_planes(struct two_phase *sim) {
@@ -36,78 +48,160 @@ static void remove_dilation(const struct two_phase *sim, double dt,
   mesh_touch(sim->grid.mesh, c);
 }
 
-/* Sweep a tracer (or c), which is filled, along d. */
-static void sweep_tracer(struct two_phase *sim, int d, double dt,
-                         const double *u_f, const struct sweep *sweep,
-                         double *tracer) {
-  const struct mesh *mesh = sim->grid.mesh;
-  vof_flux(mesh, d, dt, u_f, sim->grid.open, tracer, sweep->normal,
-           sweep->plane, sweep->flux);
-  vof_update(mesh, d, dt, u_f, sweep->flux, sweep->cc, tracer);
-}
-
-/* Begin the sweeps of a tracer with scratch, which end_tracer gives back. */
-static struct sweep begin_tracer(struct two_phase *sim) {
-  struct sweep sweep;
-  double *cell[DIM + 2];
-  scratch_take(&sim->scratch, FIELD_CELL, "tracer", DIM + 2, cell);
-  for (int e = 0; e < DIM; e++) sweep.normal[e] = cell[e];
-  sweep.plane = cell[DIM], sweep.cc = cell[DIM + 1];
-  sweep.flux = scratch_take_one(&sim->scratch, FIELD_FACE, "tracer");
-  return sweep;
-}
-
-static void end_tracer(struct two_phase *sim) {
-  scratch_give(&sim->scratch, "tracer");
-}
-
-/* Advance a tracer, or c, over dt. The planes of c stay as they are, as c may
- * be set back. */
-static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
-                           const double *source, struct field *tracer) {
-  const struct mesh *mesh = sim->grid.mesh;
-  bool held = tracer == sim->c && sim->planes_hold;
-  struct sweep sweep = begin_tracer(sim), known = sweep;
-  field_arrays(sim->normal, known.normal), known.plane = sim->plane->v;
-  vof_freeze(mesh, tracer->v, sweep.cc);
-  for (int s = 0; s < DIM; s++, held = false) {
-    const int d = (int)((sim->model.step + s) % DIM);
-    field_fill(mesh, tracer);
-    if (!held) vof_reconstruct(mesh, tracer->v, sweep.normal, sweep.plane);
-    sweep_tracer(sim, d, dt, u_f, held ? &known : &sweep, tracer->v);
+/* Sweep the fraction, which is filled, along d. */
+static void sweep_fraction(struct carriage *k, int d) {
+  const struct mesh *mesh = k->sim->grid.mesh;
+  double *c = k->fraction->v;
+  if (!k->valid) {
+    vof_reconstruct(mesh, c, k->own.normal, k->own.alpha);
+    k->valid = &k->own;
   }
-  remove_dilation(sim, dt, source, sweep.cc, tracer->v);
-  end_tracer(sim);
+  vof_flux(mesh, d, k->dt, k->u_f, k->sim->grid.open, c, k->valid->normal,
+           k->valid->alpha, k->flux);
+  vof_update(mesh, d, k->dt, k->u_f, k->flux, k->cc, c);
+  k->last = k->valid, k->valid = NULL;
 }
 
-/* Sweep c with its cc, and u in the band. u and c are filled. */
-static void sweep_grains(struct two_phase *sim, int d, double dt,
-                         const double *u_f, double *cc) {
+/* Sweep c, and u in the band. Both are filled. */
+static void sweep_with_u(struct carriage *k, int d) {
+  struct two_phase *sim = k->sim;
   const struct mesh *mesh = sim->grid.mesh;
-  double density[2], *u[DIM], *start[DIM], *cell[DIM + 1], *face[DIM + 2];
+  double density[2], *u[DIM], *start[DIM], *cell[DIM + 1], *face[DIM + 1];
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM + 1, cell);
-  scratch_take(&sim->scratch, FIELD_FACE, __func__, DIM + 2, face);
-  struct sweep sweep = {.plane = sim->plane->v, .cc = cc, .flux = face[DIM]};
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, DIM + 1, face);
   double *c_old = cell[DIM];
-  struct momentum_flux flux = {.mass = face[DIM + 1]};
+  struct momentum_flux flux = {.mass = face[DIM]};
   two_phase_densities(sim, density);
   field_arrays(sim->u, u), field_arrays(sim->u_old, start);
-  field_arrays(sim->normal, sweep.normal);
   for (int e = 0; e < DIM; e++) {
     flux.carried[e] = face[e];
     flux.slope[e] = cell[e];
   }
   memcpy(c_old, sim->c->v, (size_t)mesh->nleaves * sizeof(double));
-  fractions_update_planes(sim);
-  sweep_tracer(sim, d, dt, u_f, &sweep, sim->c->v);
-  sim->planes_hold = false;
+  sweep_fraction(k, d);
   if (sim->params->advection == ADVECTION_ON) {
-    momentum_flux(mesh, d, dt, density, u_f, c_old, sweep.flux, sim->band->v, u,
-                  &flux);
-    momentum_update(mesh, d, dt, density, u_f, c_old, cc, sim->band->v, start,
-                    &flux, u);
+    momentum_flux(mesh, d, k->dt, density, k->u_f, c_old, k->flux, sim->band->v,
+                  u, &flux);
+    momentum_update(mesh, d, k->dt, density, k->u_f, c_old, k->cc, sim->band->v,
+                    start, &flux, u);
   }
   scratch_give(&sim->scratch, __func__);
+}
+
+static void sweep_along(struct carriage *k, int d) {
+  if (k->with_u) {
+    sweep_with_u(k, d);
+  } else {
+    sweep_fraction(k, d);
+  }
+}
+
+static void fill(const struct carriage *k) {
+  const struct mesh *mesh = k->sim->grid.mesh;
+  if (k->with_u) field_fill_many(mesh, DIM, k->sim->u);
+  field_fill(mesh, k->fraction);
+}
+
+/* List the arrays that sweeps change, the fraction first; returns how many. */
+static int list_carried(const struct carriage *k, double *v[DIM + 1]) {
+  v[0] = k->fraction->v;
+  field_arrays(k->sim->u, v + 1);
+  return k->with_u ? DIM + 1 : 1;
+}
+
+/* Exchange what is carried with `other`. */
+static void exchange(const struct carriage *k, double *const other[DIM + 1]) {
+  double *v[DIM + 1];
+  const int n = list_carried(k, v);
+  for (int e = 0; e < n; e++) {
+    for (int32_t i = 0; i < k->sim->grid.mesh->ncells; i++) {
+      const double kept = v[e][i];
+      v[e][i] = other[e][i], other[e][i] = kept;
+    }
+  }
+}
+
+/* Take the mean of what is carried and `other`, of u by mass. */
+static void take_mean(const struct carriage *k, double *const other[DIM + 1]) {
+  const struct mesh *mesh = k->sim->grid.mesh;
+  double density[2], *v[DIM + 1];
+  const int n = list_carried(k, v);
+  two_phase_densities(k->sim, density);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double rho = density[1] + v[0][i] * (density[0] - density[1]);
+    const double rho_other =
+        density[1] + other[0][i] * (density[0] - density[1]);
+    for (int e = 1; e < n; e++) {
+      v[e][i] = (rho * v[e][i] + rho_other * other[e][i]) / (rho + rho_other);
+    }
+    v[0][i] = 0.5 * (v[0][i] + other[0][i]);
+  }
+  for (int e = 0; e < n; e++) mesh_touch(mesh, v[e]);
+}
+
+/* Sweep along axes a and b in both orders and take the mean, so that neither
+ * comes first. All is filled. */
+static void sweep_both(struct carriage *k, int a, int b) {
+  struct two_phase *sim = k->sim;
+  double *v[DIM + 1], *other[DIM + 1];
+  const int n = list_carried(k, v);
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, n, other);
+  for (int e = 0; e < n; e++) {
+    memcpy(other[e], v[e], (size_t)sim->grid.mesh->ncells * sizeof(double));
+  }
+  sweep_along(k, a);
+  exchange(k, other), k->valid = k->last; /* back to the start */
+  sweep_along(k, b);
+  fill(k), sweep_along(k, a);
+  exchange(k, other);
+  fill(k), sweep_along(k, b);
+  take_mean(k, other);
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Return the axis that gravity is nearest to. */
+static int vertical_axis(const struct params *params) {
+  int axis = DIM - 1;
+  for (int d = 0; d < DIM; d++) {
+    if (fabs(params->gravity[d]) > fabs(params->gravity[axis])) axis = d;
+  }
+  return axis;
+}
+
+/* Sweep along all axes, in an order that turns from step to step. In 3D the
+ * horizontal axes are alike. */
+static void sweep(struct carriage *k) {
+  const int turn = (int)(k->sim->model.step % 2);
+  if (DIM == 2) {
+    sweep_along(k, turn);
+    fill(k), sweep_along(k, 1 - turn);
+    return;
+  }
+  const int d = vertical_axis(k->sim->params);
+  if (turn == 0) sweep_along(k, d), fill(k);
+  sweep_both(k, (d + 1) % DIM, (d + 2) % DIM);
+  if (turn == 1) fill(k), sweep_along(k, d);
+}
+
+/* Advance a tracer, or c alone, over dt. The planes of c stay as they are, as c
+ * may be set back. */
+static void advance_tracer(struct two_phase *sim, double dt, const double *u_f,
+                           const double *source, struct field *tracer) {
+  const struct mesh *mesh = sim->grid.mesh;
+  struct carriage k = {sim, dt, u_f, tracer, .with_u = false};
+  struct planes known = {.alpha = sim->plane->v};
+  double *cell[DIM + 2];
+  scratch_take(&sim->scratch, FIELD_CELL, "tracer", DIM + 2, cell);
+  for (int e = 0; e < DIM; e++) k.own.normal[e] = cell[e];
+  k.own.alpha = cell[DIM], k.cc = cell[DIM + 1];
+  k.flux = scratch_take_one(&sim->scratch, FIELD_FACE, "tracer");
+  field_arrays(sim->normal, known.normal);
+  if (tracer == sim->c && sim->planes_hold) k.valid = &known;
+  vof_freeze(mesh, tracer->v, k.cc);
+  field_fill(mesh, tracer);
+  sweep(&k);
+  remove_dilation(sim, dt, source, k.cc, tracer->v);
+  scratch_give(&sim->scratch, "tracer");
 }
 
 /* Add what div u_f has made of c, whose cc this is, over dt. */
@@ -133,10 +227,13 @@ static void carry(struct two_phase *sim, double dt, const double *u_f,
   }
   if (sim->params->single_phase) return;
   vof_freeze(mesh, sim->c->v, cc);
-  for (int s = 0; s < DIM; s++) {
-    if (s > 0) field_fill_many(mesh, DIM, sim->u), field_fill(mesh, sim->c);
-    sweep_grains(sim, (int)((sim->model.step + s) % DIM), dt, u_f, cc);
-  }
+  struct carriage k = {sim, dt, u_f, sim->c, .with_u = true, .cc = cc};
+  field_arrays(sim->normal, k.own.normal), k.own.alpha = sim->plane->v;
+  k.flux = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  if (sim->planes_hold) k.valid = &k.own;
+  sweep(&k);
+  sim->planes_hold = false;
+  scratch_give(&sim->scratch, __func__);
   remove_dilation(sim, dt, source, cc, sim->c->v);
 }
 

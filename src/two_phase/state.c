@@ -262,7 +262,8 @@ static void add_scratch(struct two_phase *sim) {
   mem_free(sim->u_half->v);
   sim->u_half->v = NULL;
   sim->u_f->old = sim->u_half; /* when a step has failed */
-  const bool more = sim->params->theta < 1 || sim->exact;
+  /* for a predictor with viscosity, or sweeps in two orders */
+  const bool more = sim->params->theta < 1 || sim->exact || DIM == 3;
   const int ncells = (more ? 3 : 2) * DIM + 1;
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, ncells,
                sim->exact ? sim->yield.nrows + 3 : DIM + 2);

@@ -10,10 +10,12 @@
 #include <check.h>
 
 #include "sim.h"
+#include "talus/vof.h"
 
 Suite *still_suite(void);
 
 enum { LEVEL = 4, STEPS = 40 };
+static const double DT = 0.1;
 
 struct surface {
   double shift;  /* of the surface from the centre of the box */
@@ -66,14 +68,18 @@ START_TEST(a_surface_across_levels_stays_at_rest) {
   for (double ratio = 1e3; ratio < 2e6; ratio *= DIM == 2 ? 10 : 1e3) {
     struct params params = still_params(&surface, ratio);
     struct two_phase *sim = sim_start(&params);
+    /* grains that just cut a leaf of gas add VOF_EMPTY ratio to its weight */
+    const double dust = VOF_EMPTY * ratio * DT;
+    double speed = 0;
     bool done = true;
     for (int k = 0; k < STEPS && done; k++) {
-      done = step_advance(sim, 0.1) == EXIT_DONE;
+      done = step_advance(sim, DT) == EXIT_DONE;
+      speed = larger(speed, largest(sim, sim->u));
     }
-    const double speed = largest(sim, sim->u);
     two_phase_destroy(sim);
     ck_assert(done);
-    ck_assert_double_le(speed, 3e-8); /* 1e-7 sqrt(9.81) m/s of a box of 1 m */
+    /* 1e-7 sqrt(9.81) m/s of a box of 1 m */
+    ck_assert_double_le(speed, larger(3e-8, dust));
   }
 }
 END_TEST

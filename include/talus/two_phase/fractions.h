@@ -3,6 +3,9 @@
  * near the surface. One sweep an axis, in an order that turns from step to
  * step: c <- c - dt/h [F]_d + cc dt/h [u_f]_d                          (vof.h)
  *   rho u <- rho u - dt/h [M u^up]_d + rho_cc u^n dt/h [u_f]_d     (momentum.h)
+ * In 3D the vertical axis, that of gravity, comes first and last by turns, and
+ * the other two in both orders, from the same start: the mean of c and of rho u
+ * goes on, so that a flow that is the same in both stays so.
  *
  * A step up to the bound of Weymouth & Yue, 1/2 sum |u_f| A dt / V <= 1/2,
  * keeps all fractions in [0, 1]. Nearly always a longer step does so too: to
