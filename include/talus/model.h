@@ -73,7 +73,7 @@ struct model_kind {
    * the state that was before it. */
   int (*advance)(struct model *model, double dt_max);
   /* Find the shortest dt that makes sense, s, and return whether a step was too
-   * short (then say why). NULL: none is. */
+   * short (then say why). NULL: as short_step.h has it. */
   double (*least_dt)(const struct model *model);
   bool (*is_too_short)(const struct model *model, double least_dt,
                        const struct step_taken *taken);

@@ -27,6 +27,7 @@
 #include "talus/run_start.h"
 #include "talus/run_state.h"
 #include "talus/series.h"
+#include "talus/short_step.h"
 #include "talus/signals.h"
 #include "talus/snapshot.h"
 
@@ -291,7 +292,8 @@ static struct run *run_new(const struct params *params,
   run->model = run_start(params, options->restart ? run->checkpoint_path : NULL,
                          run->progress, &run->before, &run->size);
   const struct model_kind *kind = run->model->kind;
-  run->least_dt = kind->least_dt != NULL ? kind->least_dt(run->model) : 0;
+  run->least_dt = kind->least_dt != NULL ? kind->least_dt(run->model)
+                                         : short_step_floor(params);
   check_tables(run);
   signals_remember();
   open_files(run);
@@ -455,8 +457,10 @@ static int try_step(struct run *run) {
     return EXIT_SYSTEM;
   }
   const struct model_kind *kind = run->model->kind;
-  const bool short_step = kind->is_too_short != NULL &&
-                          kind->is_too_short(run->model, run->least_dt, &taken);
+  const bool short_step =
+      kind->is_too_short != NULL
+          ? kind->is_too_short(run->model, run->least_dt, &taken)
+          : short_step_is(run->model, run->params, run->least_dt, &taken);
   return short_step ? EXIT_NUMERICAL : EXIT_DONE;
 }
 

@@ -13,6 +13,7 @@
 #include "talus/four_state/step.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
+#include "talus/no_grains.h"
 
 static struct four_state *of(struct model *model) {
   return (struct four_state *)model;
@@ -195,8 +196,10 @@ static void measure(struct model *model, double value[],
   struct four_state *sim = of(model);
   struct four_state_measures m;
   four_state_measure(sim, &m);
-  if (model->step == 0)
+  if (model->step == 0) {
     sim->initial = m.kinetic + m.potential + m.fluctuating + m.elastic;
+    no_grains_warn(sim->params, m.volume);
+  }
   set_row(sim, &m, value);
   if (outline) {
     memset(outline, 0, sizeof *outline);

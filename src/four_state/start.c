@@ -56,7 +56,9 @@ static double depth_below(const struct four_state *sim, int axis, double up,
                           double step, const double x[3]) {
   const struct params *params = sim->params;
   const double most = params->size * params->trees[axis];
-  double at[3] = {x[0], x[1], x[2]}, inside = 0, outside = step;
+  const bool full = !params->shape.eval; /* to the wall */
+  double at[3] = {x[0], x[1], x[2]};
+  double inside = full ? most : 0, outside = full ? most : step;
   for (; outside < most; inside = outside, outside += step) {
     at[axis] = x[axis] + up * outside;
     if (!(params->shape.eval(params->shape.context, at) > 0)) break;
@@ -93,10 +95,7 @@ static void fill_state(struct four_state *sim, const struct depths *depths,
                          : 1;
     double nu = sim->keys->nu_start;
     if (depths && c > 0)
-      nu = depths_nu(depths,
-                     params->shape.eval
-                         ? depth_below(sim, axis, up, 0.25 * mesh->h[i], x)
-                         : 0);
+      nu = depths_nu(depths, depth_below(sim, axis, up, 0.25 * mesh->h[i], x));
     sim->nu->v[i] = c * nu;
     sim->T->v[i] = 0;
     for (int e = 0; e < DIM; e++) {
@@ -217,6 +216,23 @@ static void check_pressure(const struct four_state *sim, int axis) {
       nu, p, p / weight);
 }
 
+/* Refuse starts that are as dense as grains can be packed, or more. */
+static void check_packing(const struct four_state *sim) {
+  const double densest = sim->closure.param[LEE_HUANG_NU_MAX];
+  double most = 0;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
+    most = max2(most, sim->nu->v[i]);
+  most = mesh_max(sim->grid.mesh, most);
+  if (most < densest) return;
+  USER_ERROR(
+      "grains would begin at a solid fraction of %g, and grains.nu_max = %g is "
+      "the densest: take %s",
+      most, densest,
+      sim->keys->start == FOUR_STATE_UNIFORM
+          ? "a smaller grains.nu_start"
+          : "a larger grains.K, which their weight does not press so far");
+}
+
 static void check_boundaries(const struct params *params) {
   for (int b = 0; b < params->nboundaries; b++) {
     const enum boundary_type type = params->boundary[b].type;
@@ -240,8 +256,7 @@ struct four_state *four_state_new(const struct params *params,
       four_state_new_on(params, forest_new(MPI_COMM_WORLD, &layout, level));
   sim->grid.most_leaves = start->most_leaves;
   const int axis = outline_axis(params->gravity);
-  const bool balance = sim->keys->start == FOUR_STATE_BALANCE &&
-                       params->gravity[axis] != 0 && params->shape.eval;
+  const bool balance = sim->keys->start == FOUR_STATE_BALANCE;
   struct depths depths = {0};
   if (balance)
     depths = depths_new(sim, fabs(params->gravity[axis]),
@@ -254,7 +269,8 @@ struct four_state *four_state_new(const struct params *params,
     fill_state(sim, fill, axis, 3);
   }
   openings_check(&sim->grid);
-  if (balance) settle(sim, axis);
+  check_packing(sim);
+  if (balance && params->gravity[axis] != 0) settle(sim, axis);
   if (sim->keys->start == FOUR_STATE_UNIFORM) check_pressure(sim, axis);
   mem_free(depths.nu);
   return sim;

@@ -4,12 +4,12 @@
 #include <float.h>
 #include <limits.h>
 #include <math.h>
-#include <stdio.h>
 
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/log.h"
 #include "talus/memory.h"
+#include "talus/no_grains.h"
 #include "talus/two_phase/closure_fields.h"
 #include "talus/two_phase/conditions.h"
 #include "talus/two_phase/creep.h"
@@ -236,23 +236,13 @@ static void set_row(const struct two_phase *sim, const struct diagnostics *d,
   value[FLOWING] = flowing;
 }
 
-/* Warn before the first step if there are no grains. */
-static void check_grains(const struct two_phase *sim, double volume) {
-  static const char *const text =
-      "grains.shape is positive nowhere: there are no grains";
-  if (sim->params->single_phase || volume > 0 || base_rank() != 0) return;
-  if (params_bring_grains(sim->params)) return;
-  fprintf(stderr, "talus: warning: %s\n", text);
-  log_info("warning: %s", text);
-}
-
 static void keep_energies(struct two_phase *sim, const struct diagnostics *d) {
   sim->energy.kinetic = d->kinetic;
   sim->energy.potential = d->potential;
   if (sim->model.step > 0) return;
   sim->energy.initial = d->kinetic + d->potential;
   sim->energy.gas = d->gas;
-  check_grains(sim, d->volume);
+  if (!sim->params->single_phase) no_grains_warn(sim->params, d->volume);
   creep_say(sim->params, d->height);
 }
 

@@ -74,7 +74,30 @@ sed 's/rho_d = param/density = 1, rho_d = param/' \
   "$root/examples/four_state_column.lua" > density.lua
 ends 2 "$talus" check density.lua
 says 'density'
-ends 3 "$talus" run $column K=1e5 stop=0.5 -o burst --quiet
+# starts that cannot be, and one that would never end
+ends 2 "$talus" run $column K=1e3 stop=0.5 -o soft --quiet
+says 'begin at a solid fraction of .*nu_max = 0.63 .*larger grains.K'
+ends 2 "$talus" run $column start=uniform nu_start=0.64 stop=0.5 -o soft --quiet
+says 'begin at a solid fraction of 0.64, .*smaller grains.nu_start'
+sed 's/  boundary =/  velocity = { 1e20, 0 },\n&/' \
+  "$root/examples/four_state_column.lua" > wind.lua
+ends 3 "$talus" run wind.lua level=5 reference= -o wind --quiet
+says 'gave up after step .*, with which it would never end'
+# no grains are told of; a box full of them is in balance, with gravity or none
+sed 's/shape = .*/shape = function(x, y) return -1 end,/' \
+  "$root/examples/four_state_column.lua" > none.lua
+ends 0 "$talus" run none.lua level=5 stop=0.1 reference= -o none --quiet
+says 'there are no grains'
+grep -v 'shape = ' "$root/examples/four_state_column.lua" > full.lua
+sed 's/gravity = .*/gravity = { 0, 0 },/' "$root/examples/four_state_column.lua" \
+  > floats.lua
+for name in full floats; do
+  ends 0 "$talus" run $name.lua level=5 stop=1 reference= -o $name --quiet
+  awk -F, 'END { exit !($16 < 1e-6) }' $name/series.csv ||
+    complain "$name: grains at rest move"
+done
+# a fraction below nu_max
+ends 3 "$talus" run $column K=1.2e5 stop=0.5 -o burst --quiet
 grep -qE 'grains burst|do not fit' burst/run.log ||
   complain "run.log does not say why the start bursts"
 ends 0 "$talus" run $column K=1e10 start=uniform stop=0.01 -o pressed --quiet
