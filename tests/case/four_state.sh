@@ -74,6 +74,18 @@ sed 's/rho_d = param/density = 1, rho_d = param/' \
   "$root/examples/four_state_column.lua" > density.lua
 ends 2 "$talus" check density.lua
 says 'density'
+# another gravity on restart is a change of energy, and no loss of the scheme
+cp -r parts turned
+sed 's/gravity = .*/gravity = { 0, -2 * g },/' \
+  "$root/examples/four_state_column.lua" > heavy.lua
+ends 5 "$talus" run heavy.lua level=6 stop=0.8 reference= -o turned --quiet \
+  --restart --max-steps 1
+{ tail -n 1 parts/series.csv; tail -n 1 turned/series.csv; } | awk -F, '
+  NR == 1 { potential = $11; lost = $15 }
+  END { d = ($30 - potential) / potential; e = ($15 - lost) / potential
+        exit !($30 > 0 && d < 1e-6 && -d < 1e-6 && e < 0.01 && -e < 0.01) }' ||
+  complain "another gravity is booked as numerical"
+
 # starts that cannot be, and one that would never end
 ends 2 "$talus" run $column K=1e3 stop=0.5 -o soft --quiet
 says 'begin at a solid fraction of .*nu_max = 0.63 .*larger grains.K'

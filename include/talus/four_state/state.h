@@ -63,6 +63,8 @@ struct four_state {
   struct granular_stats pressure;
   struct solve_stats viscous, conduction;
   double initial;    /* energy at t = 0, J/m (3D: J) */
+  double changed;    /* that restarts with other conditions have added */
+  double energy;     /* when the checkpoint was written */
   double dissipated; /* since then, by friction and collisions */
 };
 
