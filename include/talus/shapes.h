@@ -22,7 +22,8 @@
  * hides from these points (a thread thinner than the cell in a function that is
  * flat elsewhere) is not seen. f = 0 is outside, over a volume too, so that a
  * function may be cut off there, max(0, f), or be 1 inside and 0 outside, which
- * is wrong by the smallest pieces that the surface cuts.
+ * is wrong by the smallest pieces that the surface cuts; a piece with f = 0 all
+ * over is halved six times at most.
  *
  * Accuracy of c, with H = h 2^-depth the edge of the smallest piece:
  *   plane surface                      round-off, 1e-14

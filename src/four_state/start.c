@@ -87,8 +87,7 @@ static void fill_state(struct four_state *sim, const struct depths *depths,
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double x[3] = {0};
     for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
-    int depth = params->level_max - mesh->level[i] + fineness;
-    if (depth > 6) depth = 6;
+    const int depth = params->level_max - mesh->level[i] + fineness;
     const double c = params->shape.eval
                          ? fraction(params->shape.eval, params->shape.context,
                                     mesh->x[i], mesh->h[i], depth)

@@ -7,6 +7,9 @@
 #include "talus/minmax.h"
 #include "talus/ring.h"
 
+/* Halvings of a piece on which f is 0 all over. */
+enum { BLIND = 6 };
+
 enum { NVERTEX = 1 << DIM, NLATTICE = DIM == 2 ? 9 : 27 };
 
 /* A cell or piece of one, with the level set at its vertices and centre.
@@ -125,17 +128,20 @@ static struct piece half(const struct shape *shape, const struct piece *p,
   return q;
 }
 
-/* Return the fraction of a piece that may still be halved `depth` times. */
+/* Return the fraction of a piece that may still be halved `depth` times, and
+ * `blind` times where f is 0 all over and tells nothing. */
 static double piece_fraction(const struct shape *shape, const struct piece *p,
-                             int depth) {
+                             int depth, int blind) {
+  const double change = variation(p);
   int sign = common_sign(p, 0.);
-  if (sign && fabs(p->centre) > 1.5 * variation(p)) return sign > 0 ? 1. : 0.;
-  if (depth <= 0) return cut_piece(shape, p);
+  if (sign && fabs(p->centre) > 1.5 * change) return sign > 0 ? 1. : 0.;
+  blind = p->centre == 0 && change == 0 ? blind - 1 : BLIND;
+  if (depth <= 0 || blind < 0) return cut_piece(shape, p);
   double lattice[NLATTICE], sum = 0.;
   fill_lattice(shape, p, lattice);
   for (int child = 0; child < NVERTEX; child++) {
     struct piece q = half(shape, p, lattice, child);
-    const double part = piece_fraction(shape, &q, depth - 1);
+    const double part = piece_fraction(shape, &q, depth - 1, blind);
     sum += shape->rings ? q.x[0] / p->x[0] * part : part;
   }
   return sum / NVERTEX;
@@ -151,7 +157,7 @@ static double fraction(const struct shape *shape, const double centre[DIM],
     p.vertex[v] = evaluate(shape, x);
   }
   p.centre = evaluate(shape, centre);
-  return piece_fraction(shape, &p, depth);
+  return piece_fraction(shape, &p, depth, BLIND);
 }
 
 double shape_fraction(shape_level_set f, void *context,

@@ -33,11 +33,10 @@ static void tell(const struct beginning *beginning, const char *what,
 }
 
 /* Fill a field with the fractions of a shape. Coarse leaves are divided more
- * often, so that what is DEEPEST levels finer is not missed. */
+ * often, so that what is of the size of the finest ones is not missed. */
 static void fill_shape(const struct beginning *beginning,
                        enum fineness fineness, const struct function *shape,
                        struct field *field) {
-  enum { DEEPEST = 6 };
   const struct two_phase *sim = beginning->sim;
   const struct mesh *mesh = sim->grid.mesh;
   double (*const fraction)(shape_level_set, void *, const double[DIM], double,
@@ -45,8 +44,7 @@ static void fill_shape(const struct beginning *beginning,
       mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     tell(beginning, "shapes", i);
-    int depth = sim->params->level_max - mesh->level[i] + (int)fineness;
-    if (depth > DEEPEST) depth = DEEPEST;
+    const int depth = sim->params->level_max - mesh->level[i] + (int)fineness;
     field->v[i] = shape->eval ? fraction(shape->eval, shape->context,
                                          mesh->x[i], mesh->h[i], depth)
                               : 1;

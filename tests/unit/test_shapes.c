@@ -211,6 +211,18 @@ START_TEST(shape_fraction_sees_a_sphere_smaller_than_the_cell) {
 }
 END_TEST
 
+/* In a box a thousand times as large, and with no more calls than a surface
+ * needs. */
+START_TEST(shape_fraction_finds_a_ball_in_a_large_cell) {
+  double centre[DIM] = {0.};
+  struct sphere sphere = {{0.127, -0.211, 0.093}, 1e-3, 1., 0};
+  const double exact = (DIM == 2 ? PI * 1e-6 : 4. / 3. * PI * 1e-9);
+  const double c = shape_fraction(sphere_value, &sphere, centre, 1., 12);
+  ck_assert_double_eq_tol(c / exact, 1., 0.03);
+  ck_assert_int_le(sphere.calls, DIM == 2 ? 20000 : 200000);
+}
+END_TEST
+
 START_TEST(shape_fraction_calls_the_level_set_sparingly) {
   /* a cell in the middle of a flat surface, and one far from it */
   double x[DIM] = {0.}, far[DIM] = {3.};
@@ -239,6 +251,7 @@ Suite *shapes_suite(void) {
   tcase_add_test(tcase, shape_fraction_of_a_box_errs_at_corners_only);
   tcase_add_test(tcase, shape_fraction_of_a_sphere_converges_with_third_order);
   tcase_add_test(tcase, shape_fraction_sees_a_sphere_smaller_than_the_cell);
+  tcase_add_test(tcase, shape_fraction_finds_a_ball_in_a_large_cell);
   tcase_add_test(tcase, shape_fraction_calls_the_level_set_sparingly);
   suite_add_tcase(suite, tcase);
   return suite;
