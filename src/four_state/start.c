@@ -215,21 +215,29 @@ static void check_pressure(const struct four_state *sim, int axis) {
       nu, p, p / weight);
 }
 
-/* Refuse starts that are as dense as grains can be packed, or more. */
+/* Refuse starts that are as dense as grains can be packed, or more, and columns
+ * whose weight packs them beyond nu_0: p_D has its pole there, and the first
+ * fluctuation would make them burst. */
 static void check_packing(const struct four_state *sim) {
-  const double densest = sim->closure.param[LEE_HUANG_NU_MAX];
+  const double *param = sim->closure.param;
+  const bool uniform = sim->keys->start == FOUR_STATE_UNIFORM;
   double most = 0;
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
     most = max2(most, sim->nu->v[i]);
   most = mesh_max(sim->grid.mesh, most);
-  if (most < densest) return;
+  if (most < param[uniform ? LEE_HUANG_NU_MAX : LEE_HUANG_NU_0]) return;
+  if (uniform)
+    USER_ERROR(
+        "grains would begin at a solid fraction of %g, and grains.nu_max = %g "
+        "is the densest: take a smaller grains.nu_start",
+        most, param[LEE_HUANG_NU_MAX]);
   USER_ERROR(
-      "grains would begin at a solid fraction of %g, and grains.nu_max = %g is "
-      "the densest: take %s",
-      most, densest,
-      sim->keys->start == FOUR_STATE_UNIFORM
-          ? "a smaller grains.nu_start"
-          : "a larger grains.K, which their weight does not press so far");
+      "grains would begin at a solid fraction of %.4g at the foot of a column "
+      "in "
+      "balance; above grains.nu_0 = %g their pressure has no bound once they "
+      "move: take a larger grains.K, a smaller grains.chi, a lower column or "
+      "grains.start = \"uniform\"",
+      most, param[LEE_HUANG_NU_0]);
 }
 
 static void check_boundaries(const struct params *params) {

@@ -48,7 +48,7 @@
 
 /* A failed step is repeated at most RETRIES times, each time with dt reduced by
  * RETRY_FACTOR. */
-enum { RETRIES = 8, PICARD = 2, MOST_NEWTON = 30 };
+enum { RETRIES = 12, PICARD = 2, MOST_NEWTON = 30 };
 #define RETRY_FACTOR 0.5
 
 /* A leaf may give away this part of its grains in a step. */
@@ -56,8 +56,9 @@ enum { RETRIES = 8, PICARD = 2, MOST_NEWTON = 30 };
 /* R of granular_pressure.h is bounded by this times solver.tolerance_pressure.
  */
 #define PRESSURE_FACTOR 1e-4
-/* Grains may have this times the kinetic energy that is accounted for. */
-#define BURST 4
+/* Grains may have this times the kinetic energy that is accounted for; those of
+ * a collapse have 0.98 times as much at most. */
+#define BURST 1.05
 /* Slope of P where there is no pressure, Pa. */
 #define LEAST_SLOPE 1e-4
 /* Solid fractions below this count as this in the viscous equation. */

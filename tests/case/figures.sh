@@ -36,6 +36,11 @@ grep -q '^solver.advection,off,' \
 [ "$(grep -l '^solver.cfl,0.6,' out/runs/column-*/parameters.csv | wc -l)" -eq 2 ] ||
   complain "cfl does not reach the runs"
 
+# A paper of another model.
+draw lee_huang_chiew_2015 8 --cells 4 -o lee ||
+  grep -q 'MISSED' output || complain "figure 8 is not drawn"
+[ -s lee/fig8.png ] || complain "there is no lee/fig8.png"
+
 draw valette_2019 99 && complain "figure 99 is drawn"
 grep -q "there is no figure '99'; those of the paper are 5, 6, " output ||
   complain "figure 99 is not refused"
