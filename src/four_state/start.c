@@ -4,12 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "talus/depths.h"
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/four_state/properties.h"
 #include "talus/four_state/state.h"
 #include "talus/four_state/step.h"
-#include "talus/memory.h"
 #include "talus/minmax.h"
 #include "talus/model.h"
 #include "talus/openings.h"
@@ -23,64 +23,15 @@ static const double BALANCED = 1e-12;
  * MOST_CHANGE. */
 static const double ROUGHLY = 1e-9, MOST_CHANGE = 0.01;
 
-/* Solid fraction over the depth below the surface, every `spacing` m. */
-struct depths {
-  int n;
-  double spacing, *nu;
-};
-
-/* Integrate dp/dz = rho_d nu(p) g downwards by the midpoint rule. */
-static struct depths depths_new(const struct four_state *sim, double g,
-                                double most) {
-  enum { N = 4000 };
-  struct depths depths = {N, most / N, MEM_NEW(double, N + 1)};
-  const double pull = sim->closure.param[LEE_HUANG_RHO_D] * g * depths.spacing;
-  double p = 0;
-  for (int k = 0; k <= N; k++) {
-    depths.nu[k] = four_state_packed(&sim->closure, p);
-    const double half = p + 0.5 * pull * depths.nu[k];
-    p += pull * four_state_packed(&sim->closure, half);
-  }
-  return depths;
-}
-
-static double depths_nu(const struct depths *depths, double depth) {
-  const double at = fmax(depth, 0) / depths->spacing;
-  const int k = (int)fmin(at, depths->n - 1);
-  return depths->nu[k] + (at - k) * (depths->nu[k + 1] - depths->nu[k]);
-}
-
-/* Find how far grains reach from x along the vertical axis, against gravity, in
- * steps of `step` and then by halving. */
-static double depth_below(const struct four_state *sim, int axis, double up,
-                          double step, const double x[3]) {
-  const struct params *params = sim->params;
-  const double most = params->size * params->trees[axis];
-  const bool full = !params->shape.eval; /* to the wall */
-  double at[3] = {x[0], x[1], x[2]};
-  double inside = full ? most : 0, outside = full ? most : step;
-  for (; outside < most; inside = outside, outside += step) {
-    at[axis] = x[axis] + up * outside;
-    if (!(params->shape.eval(params->shape.context, at) > 0)) break;
-  }
-  for (int k = 0; k < 40 && outside < most; k++) {
-    const double middle = 0.5 * (inside + outside);
-    at[axis] = x[axis] + up * middle;
-    if (params->shape.eval(params->shape.context, at) > 0)
-      inside = middle;
-    else
-      outside = middle;
-  }
-  const double wall = up > 0 ? params->origin[axis] + most - x[axis]
-                             : x[axis] - params->origin[axis];
-  return min2(inside, wall);
+static double packed(const void *context, double p) {
+  const struct four_state *sim = context;
+  return four_state_packed(&sim->closure, p);
 }
 
 static void fill_state(struct four_state *sim, const struct depths *depths,
                        int axis, int fineness) {
   const struct params *params = sim->params;
   const struct mesh *mesh = sim->grid.mesh;
-  const double up = params->gravity[axis] > 0 ? -1 : 1;
   double (*fraction)(shape_level_set f, void *context, const double centre[DIM],
                      double h, int depth) =
       mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
@@ -94,7 +45,7 @@ static void fill_state(struct four_state *sim, const struct depths *depths,
                          : 1;
     double nu = sim->keys->nu_start;
     if (depths && c > 0)
-      nu = depths_nu(depths, depth_below(sim, axis, up, 0.25 * mesh->h[i], x));
+      nu = depths_at(depths, depths_below(params, axis, 0.25 * mesh->h[i], x));
     sim->nu->v[i] = c * nu;
     sim->T->v[i] = 0;
     for (int e = 0; e < DIM; e++) {
@@ -266,8 +217,9 @@ struct four_state *four_state_new(const struct params *params,
   const bool balance = sim->keys->start == FOUR_STATE_BALANCE;
   struct depths depths = {0};
   if (balance)
-    depths = depths_new(sim, fabs(params->gravity[axis]),
-                        params->size * params->trees[axis]);
+    depths = depths_new(
+        sim->closure.param[LEE_HUANG_RHO_D] * fabs(params->gravity[axis]),
+        params->size * params->trees[axis], packed, sim);
   const struct depths *fill = balance ? &depths : NULL;
   if (params->ncriteria > 0) {
     adapt_to_state(sim, fill, axis, 0);
@@ -279,6 +231,6 @@ struct four_state *four_state_new(const struct params *params,
   check_packing(sim);
   if (balance && params->gravity[axis] != 0) settle(sim, axis);
   if (sim->keys->start == FOUR_STATE_UNIFORM) check_pressure(sim, axis);
-  mem_free(depths.nu);
+  depths_free(&depths);
   return sim;
 }
