@@ -44,7 +44,8 @@ struct key {
   const char *help;
   size_t offset; /* in struct params, or in the struct of the model's own */
   /* KEY_CHOICE: names in the order of the enum, which begins at 0; NULL at the
-   * end. */
+   * end. KEY_SECTION: names that it may begin with, a choice like that; the
+   * last holds for a section without; NULL: it has none. */
   const char *const *choices;
 };
 

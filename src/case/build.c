@@ -35,8 +35,9 @@ static const struct model_keys *model_of(const struct case_file *file) {
 }
 
 /* Check that the keys right inside `section` ("" for the case itself) are all
- * that the table on top may hold. */
-static void check_section(struct case_file *file, const char *section) {
+ * that the table on top may hold, after a list of so many. */
+static void check_section(struct case_file *file, const char *section,
+                          int list) {
   const char *names[CASE_MAX_NAMES];
   const struct key *key;
   size_t length = strlen(section);
@@ -51,7 +52,7 @@ static void check_section(struct case_file *file, const char *section) {
     }
     if (strchr(inner, '.') == NULL && n < CASE_MAX_NAMES) names[n++] = inner;
   }
-  read_known_only(file, section, n, names, 0);
+  read_known_only(file, section, n, names, list);
 }
 
 static void read_section(struct case_file *file, const struct key *key) {
@@ -62,8 +63,31 @@ static void read_section(struct case_file *file, const struct key *key) {
                  key->path, key->help);
   if (given && !lua_istable(L, -1))
     read_fail(file, key->path, "a table is needed (%s)", key->help);
-  if (given) check_section(file, key->path);
+  if (given) check_section(file, key->path, 0);
   lua_pop(L, 1);
+}
+
+/* Read a section that begins with a name, { "name", key = value }, "name" for
+ * short, or { key = value } for the last of all names. */
+static void read_named(struct case_file *file, const struct key *key,
+                       void *base) {
+  lua_State *L = file->L;
+  struct key name = *key;
+  name.type = KEY_CHOICE, name.unit = "";
+  if (lua_istable(L, -1)) {
+    lua_rawgeti(L, -1, 1);
+    const bool named = !lua_isnil(L, -1);
+    lua_insert(L, -2);
+    check_section(file, key->path, named ? 1 : 0);
+    lua_pop(L, 1);
+    if (!named) {
+      int last = 0;
+      while (key->choices[last + 1] != NULL) last++;
+      lua_pop(L, 1);
+      lua_pushstring(L, key->choices[last]);
+    }
+  }
+  read_value(file, &name, key->path, base);
 }
 
 /* Read the value of `key`, which is on top. */
@@ -247,13 +271,15 @@ void build_params(struct case_file *file) {
   set_defaults(file);
   read_model(file);
   lua_pushvalue(L, 1);
-  check_section(file, "");
+  check_section(file, "", 0);
   lua_pop(L, 1);
   for (int i = 0; (key = keys_get(model_of(file), i)) != NULL; i++) {
     if (is_absent(file, key) || strcmp(key->path, "model") == 0) continue;
     if (!keys_takes(model_of(file), key->path)) continue;
     push_path(file, key->path);
-    if (key->type == KEY_SECTION)
+    if (key->type == KEY_SECTION && key->choices != NULL)
+      read_named(file, key, base_of(file, key));
+    else if (key->type == KEY_SECTION)
       read_section(file, key);
     else
       read_key(file, key, base_of(file, key));

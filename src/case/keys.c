@@ -53,7 +53,8 @@ static const struct key KEYS[] = {
      .offset = AT(gravity), .help = "acceleration"},
     {"grains", KEY_SECTION, KEY_NEEDED, .help = "the granular phase"},
     {"grains.density", KEY_NUMBER, KEY_POSITIVE, KEY_NEEDED, .unit = "kg/m^3",
-     .offset = AT(grains.density), .help = "bulk density"},
+     .offset = AT(grains.density),
+     .help = "bulk density; with model = \"two_fluid\" that of a grain"},
     {"grains.shape", KEY_SHAPE, KEY_OPTIONAL, .unit = "m", .offset = AT(shape),
      .help = "level set at t = 0, positive inside; left out with gas, they "
              "fill the box"},

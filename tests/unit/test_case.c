@@ -18,7 +18,7 @@
 
 Suite *case_suite(void);
 
-enum { TEXT_LENGTH = 16384 };
+enum { TEXT_LENGTH = 32768 };
 
 /* A sound case in pieces, so that a test can put something else in. */
 #define DOMAIN "dimension = 2, domain = { size = 4, level = 5 },\n"
