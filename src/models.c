@@ -7,7 +7,7 @@
 
 #include "talus/memory.h"
 
-#define MODELS MODEL(two_phase) MODEL(four_state)
+#define MODELS MODEL(two_phase) MODEL(four_state) MODEL(two_fluid)
 
 #define MODEL(name) extern const struct model_kind name##_model;
 MODELS

@@ -38,7 +38,7 @@ SEES["grid"] = SEES["solver"] | {"solver", "params"}
 SEES["flow"] = SEES["grid"] | {"grid"}
 SEES["measure"] = SEES["flow"] | {"flow"}
 SEES["models"] = SEES["measure"] | {"measure"}
-MODELS = {"two_phase", "four_state"}
+MODELS = {"two_phase", "four_state", "two_fluid"}
 SEES.update({model: SEES["models"] | {"models"} for model in MODELS})
 SEES["command"] = SEES["models"] | {"models", "case", "io"}
 # src/models.c lists the models.

@@ -73,7 +73,7 @@ ends 2 "$talus" check a.lua
 says 'gas = a table is a key of model = "two_phase"'
 sed 's/model = "given_flow"/model = "given_flaw"/' "$case" > a.lua
 ends 2 "$talus" check a.lua
-says '"two_phase", "four_state" or "given_flow"'
+says '"two_phase", "four_state", "two_fluid" or "given_flow"'
 sed 's/shear_rate = 0.5/tracers = { a = function(x, y) return x end }/' "$case" > a.lua
 ends 2 "$talus" check a.lua
 says 'tracers = a table is a key of model = "two_phase"'

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Properties of grains and fluid in leaves and at faces, from alpha, u_s and
+ * u_f: drag, granular temperature, pressure of the grains, viscosities. */
+#ifndef TALUS_TWO_FLUID_PROPERTIES_H
+#define TALUS_TWO_FLUID_PROPERTIES_H
+
+#include <stdint.h>
+
+#include "talus/two_fluid_grains.h"
+
+struct two_fluid;
+
+/* Fill alpha and the velocities, and set shear rates, drag, Theta and p_s
+ * (filled). Collective. */
+void two_fluid_properties(struct two_fluid *sim);
+/* Set the shear rates of the grains in leaves; both velocities are filled.
+ * Collective. */
+void two_fluid_shear_leaves(struct two_fluid *sim);
+/* Set eta_f, kappa_f of both phases from p_s and the shear rates of velocities
+ * that are filled. Friction has p_s as dilatancy will raise it over dt, p_s + C
+ * gamma dt, else dense grains would shear far beyond the strain that makes them
+ * hold before p_s is felt. Friction has p_s of both leaves of a face, and on
+ * walls the weight of the grains that lie on the wall; faces to leaves without
+ * grains have none. Collective. */
+void two_fluid_viscosities(struct two_fluid *sim);
+/* Return P of leaf i at a solid fraction alpha, with the phi_p that shear will
+ * have made of that of the leaf in dt: grains that are too dense for their
+ * shear push at once, and are let go as they expand. slope: unless NULL,
+ * dP/dalpha. */
+double two_fluid_law(const struct two_fluid *sim, int32_t i, double alpha,
+                     double dt, double *slope);
+/* Return the plastic packing of leaf i after dt of shear at alpha. */
+double two_fluid_next_packing(const struct two_fluid *sim, int32_t i,
+                              double alpha, double dt);
+/* Give leaves without grains the velocity of the grains around them, else that
+ * of the fluid, and fill u_s. alpha is filled. Collective. */
+void two_fluid_calm(struct two_fluid *sim);
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The state of t = 0. By default (grains.start = "settled") the pressure of the
+ * grains carries their weight less buoyancy, dp_s/dz = -(rho_s - rho_f) alpha
+ * g, integrated down each column, so that nothing moves before something gives
+ * way. */
+#ifndef TALUS_TWO_FLUID_START_H
+#define TALUS_TWO_FLUID_START_H
+
+struct model_start;
+struct params;
+struct two_fluid;
+
+struct two_fluid *two_fluid_new(const struct params *params,
+                                const struct model_start *start);
+
+#endif

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Transport: what grains and fluid carry, on the fluxes that move alpha.
+ *
+ *   a^{n+1} q' = a^n q - dt div(F q_f)
+ *
+ * with a = alpha and F = alpha u_s, or 1 - alpha and j - F: momentum rides with
+ * mass, and what no grains cross does not count. q_f is the donor's value with
+ * a slope, half a step earlier; loose grains, with friction at work beside
+ * leaves that have none, have no slope.
+ */
+#ifndef TALUS_TWO_FLUID_TRANSPORT_H
+#define TALUS_TWO_FLUID_TRANSPORT_H
+
+#include <stdint.h>
+
+struct two_fluid;
+
+/* Carry both velocities, phi_p and X over dt and set alpha to alpha_new.
+ * Collective. */
+void two_fluid_transport(struct two_fluid *sim, double dt);
+/* Return the part of its grains that leaf i gives away over dt by the last
+ * flux; alpha is that of before. */
+double two_fluid_part_given(const struct two_fluid *sim, double dt, int32_t i);
+/* Return the largest of a leaf that has grains. Collective. */
+double two_fluid_given(const struct two_fluid *sim, double dt);
+
+#endif

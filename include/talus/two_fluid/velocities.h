@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Velocities of leaves: viscosity of both phases, implicit.
+ *
+ * Viscosity acts on velocities that pressures and weight of the last step have
+ * moved already, and drag holds the phases together meanwhile. With m_s = alpha
+ * rho_s, m_f = (1 - alpha) rho_f, k = dt K, theta = k/(m_f + k), and b what the
+ * forces of faces give a leaf (pressures.h),
+ *
+ *   (m_s + theta m_f) u_s - dt div(tau_s + theta tau_f(u_s))
+ *       = m_s (u_s^n + dt b_s) + theta m_f (u_f^n + dt b_f)
+ *   (m_f + k) u_f - dt div tau_f(u_f) = m_f (u_f^n + dt b_f) + k u_s
+ *
+ * The fluid that is eliminated from the first equation takes the part theta of
+ * its own viscosity with it: where drag rules, both move as one, with the
+ * viscosity of both; without that part tau_f would be explicit there. Kept are
+ * the viscous forces alone,
+ *
+ *   u_s* = u_s^n + dt div tau_s/m_s,   u_f* = u_f^n + dt div tau_f/m_f,
+ *
+ * so that the momentum of the sum is kept whatever theta is; drag, pressures
+ * and weight act on faces. */
+#ifndef TALUS_TWO_FLUID_VELOCITIES_H
+#define TALUS_TWO_FLUID_VELOCITIES_H
+
+struct two_fluid;
+
+/* Advance the velocities of leaves by viscosity; fields_save has kept u^n.
+ * Fills p. Collective. */
+void two_fluid_velocities(struct two_fluid *sim, double dt);
+
+#endif

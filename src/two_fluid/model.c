@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_fluid/model.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/memory.h"
+#include "talus/minmax.h"
+#include "talus/two_fluid/measure.h"
+#include "talus/two_fluid/properties.h"
+#include "talus/two_fluid/start.h"
+#include "talus/two_fluid/state.h"
+#include "talus/two_fluid/step.h"
+
+static struct two_fluid *of(struct model *model) {
+  return (struct two_fluid *)model;
+}
+
+static struct model *model_of(struct two_fluid *sim) {
+  sim->model.kind = &two_fluid_model;
+  return &sim->model;
+}
+
+static struct model *start(const struct params *params,
+                           const struct model_start *start) {
+  return model_of(two_fluid_new(params, start));
+}
+
+static struct model *resume(const struct params *params,
+                            struct forest *forest) {
+  return model_of(two_fluid_new_on(params, forest));
+}
+
+static void destroy(struct model *model) {
+  if (model != NULL) two_fluid_destroy(of(model));
+}
+
+static int advance(struct model *model, double dt_max) {
+  return two_fluid_step(of(model), dt_max);
+}
+
+static bool is_at_rest(struct model *model) {
+  struct two_fluid *sim = of(model);
+  const struct params *params = sim->params;
+  if (!(params->rest_time > 0)) return false;
+  const bool slow = two_fluid_carrying_speed(sim) < params->rest_speed;
+  sim->slow_time = slow ? sim->slow_time + model->dt : 0;
+  return sim->slow_time >= params->rest_time;
+}
+
+static void outputs(struct model *model, bool make) {
+  struct two_fluid *sim = of(model);
+  const int32_t n = sim->grid.mesh->nleaves;
+  for (int d = 0; d < DIM; d++) {
+    mem_free(sim->mean[d]->v);
+    sim->mean[d]->v = make ? MEM_NEW(double, n) : NULL;
+    for (int32_t i = 0; make && i < n; i++)
+      sim->mean[d]->v[i] = two_fluid_mean_velocity(sim, i, d);
+  }
+  if (!make) return;
+  two_fluid_properties(sim);
+  for (int32_t i = 0; i < n; i++)
+    sim->c->v[i] = min2(sim->alpha->v[i] / sim->keys->alpha_start, 1);
+  mesh_touch(sim->grid.mesh, sim->c->v);
+}
+
+/* Columns of series.csv */
+
+enum {
+  STEP,
+  TIME,
+  DT,
+  CELLS,
+  FRONT,
+  HEIGHT,
+  GRAIN_FRONT,
+  GRAIN_HEIGHT,
+  VOLUME,
+  FLUID_VOLUME,
+  MOMENTUM_X,
+  MOMENTUM_Y,
+  MOMENTUM_Z,
+  KINETIC,
+  FLUID_KINETIC,
+  POTENTIAL,
+  LOST,
+  MAX_FLUX,
+  MAX_SPEED,
+  GRAIN_SPEED,
+  SUSPENDED,
+  MEAN_ALPHA,
+  MAX_ALPHA,
+  MAX_SOLID_PRESSURE,
+  LEAST_PRESSURE,
+  MOST_PRESSURE,
+  PASSES,
+  NEWTON,
+  SOLID_ITERATIONS,
+  PRESSURE_ITERATIONS,
+  VISCOUS_ITERATIONS,
+  FLUID_VISCOUS_ITERATIONS,
+  WALL_SECONDS,
+  NCOLUMNS
+};
+
+/* clang-format off */
+static const struct column COLUMNS[NCOLUMNS] = {
+    [STEP] = {"step", COLUMN_INTEGER, "", "number of the step; 0 is the start"},
+    [TIME] = {"time", COLUMN_REAL, "s", "at its end"},
+    [DT] = {"dt", COLUMN_REAL, "s", "its length"},
+    [CELLS] = {"cells", COLUMN_INTEGER, "", "leaves of the tree"},
+    [FRONT] = {"front", COLUMN_SHORT, "m",
+               "where the contour alpha = alpha_surface ends, its x (3D: "
+               "distance from the lower edge of the box)"},
+    [HEIGHT] = {"height", COLUMN_SHORT, "m", "of that contour"},
+    [GRAIN_FRONT] = {"grain_front", COLUMN_SHORT, "m",
+                     "where the solid volume per area over alpha_start falls "
+                     "below half a grain"},
+    [GRAIN_HEIGHT] = {"grain_height", COLUMN_SHORT, "m",
+                      "largest solid volume per area over alpha_start"},
+    [VOLUME] = {"volume", COLUMN_REAL, "m^2 (3D: m^3)", "of the grains alone"},
+    [FLUID_VOLUME] = {"fluid_volume", COLUMN_REAL, "m^2 (3D: m^3)", "of the fluid"},
+    [MOMENTUM_X] = {"momentum_x", COLUMN_SHORT, "kg/s (3D: kg m/s)", "of both"},
+    [MOMENTUM_Y] = {"momentum_y", COLUMN_SHORT, "kg/s (3D: kg m/s)", "likewise"},
+    [MOMENTUM_Z] = {"momentum_z", COLUMN_SHORT, "kg m/s", "likewise; 0 in 2D"},
+    [KINETIC] = {"kinetic", COLUMN_SHORT, "J/m (3D: J)", "energy of the grains"},
+    [FLUID_KINETIC] = {"fluid_kinetic", COLUMN_SHORT, "J/m (3D: J)", "energy of the fluid"},
+    [POTENTIAL] = {"potential", COLUMN_SHORT, "J/m (3D: J)",
+                   "energy of the grains, less buoyancy"},
+    [LOST] = {"lost", COLUMN_SHORT, "J/m (3D: J)",
+              "what these three miss of the start: friction, drag, viscosity "
+              "and the scheme"},
+    [MAX_FLUX] = {"max_flux", COLUMN_SHORT, "m/s",
+                  "largest volume flux of grains through a face"},
+    [MAX_SPEED] = {"max_speed", COLUMN_SHORT, "m/s",
+                   "largest mean flux of a leaf over its solid fraction, "
+                   "within the contour"},
+    [GRAIN_SPEED] = {"grain_speed", COLUMN_SHORT, "m/s",
+                     "likewise, root of the mean square over all grains"},
+    [SUSPENDED] = {"suspended", COLUMN_SHORT, "", "part of the grains outside the contour"},
+    [MEAN_ALPHA] = {"mean_alpha", COLUMN_SHORT, "", "solid fraction within the contour"},
+    [MAX_ALPHA] = {"max_alpha", COLUMN_REAL, "", "largest solid fraction"},
+    [MAX_SOLID_PRESSURE] = {"max_solid_pressure", COLUMN_SHORT, "Pa", "of the grains"},
+    [LEAST_PRESSURE] = {"least_pressure", COLUMN_SHORT, "Pa", "least excess pressure of the fluid"},
+    [MOST_PRESSURE] = {"most_pressure", COLUMN_SHORT, "Pa", "largest excess pressure of the fluid"},
+    [PASSES] = {"passes", COLUMN_INTEGER, "", "of the two pressures in the step"},
+    [NEWTON] = {"newton", COLUMN_INTEGER, "",
+                "iterations for pressure and mass of the grains, in all passes"},
+    [SOLID_ITERATIONS] = {"solid_iterations", COLUMN_INTEGER, "",
+                          "of the linear solver in all of them"},
+    [PRESSURE_ITERATIONS] = {"pressure_iterations", COLUMN_INTEGER, "",
+                             "of the projection"},
+    [VISCOUS_ITERATIONS] = {"viscous_iterations", COLUMN_INTEGER, "",
+                            "of the viscous solver for the grains, two passes"},
+    [FLUID_VISCOUS_ITERATIONS] = {"fluid_viscous_iterations", COLUMN_INTEGER, "",
+                                  "of that for the fluid"},
+    [WALL_SECONDS] = {"wall_seconds", COLUMN_SHORT, "s",
+                      "on the clock since the first step"},
+};
+/* clang-format on */
+
+static void set_measures(const struct two_fluid *sim,
+                         const struct two_fluid_measures *m,
+                         double value[NCOLUMNS]) {
+  value[FRONT] = m->front;
+  value[HEIGHT] = m->height;
+  value[GRAIN_FRONT] = m->grain_front;
+  value[GRAIN_HEIGHT] = m->grain_height;
+  value[VOLUME] = m->volume;
+  value[FLUID_VOLUME] = m->fluid_volume;
+  for (int d = 0; d < 3; d++) value[MOMENTUM_X + d] = m->momentum[d];
+  value[KINETIC] = m->kinetic;
+  value[FLUID_KINETIC] = m->fluid_kinetic;
+  value[POTENTIAL] = m->potential;
+  value[LOST] = sim->initial - m->kinetic - m->fluid_kinetic - m->potential;
+  value[MAX_FLUX] = m->max_flux;
+  value[MAX_SPEED] = m->max_speed;
+  value[GRAIN_SPEED] = m->grain_speed;
+  value[SUSPENDED] = m->suspended;
+  value[MEAN_ALPHA] = m->mean_alpha;
+  value[MAX_ALPHA] = m->max_alpha;
+  value[MAX_SOLID_PRESSURE] = m->max_solid_pressure;
+  value[LEAST_PRESSURE] = m->least_pressure;
+  value[MOST_PRESSURE] = m->most_pressure;
+}
+
+static void set_row(const struct two_fluid *sim,
+                    const struct two_fluid_measures *m,
+                    double value[NCOLUMNS]) {
+  const struct model *model = &sim->model;
+  value[STEP] = (double)model->step;
+  value[TIME] = model->time;
+  value[DT] = model->dt;
+  value[CELLS] = (double)forest_nleaves_global(sim->grid.forest);
+  set_measures(sim, m, value);
+  value[PASSES] = sim->passes;
+  value[NEWTON] = sim->pressure.newton;
+  value[SOLID_ITERATIONS] = sim->pressure.iterations;
+  value[PRESSURE_ITERATIONS] = sim->projection.iterations;
+  value[VISCOUS_ITERATIONS] = sim->viscous[TWO_FLUID_S].iterations;
+  value[FLUID_VISCOUS_ITERATIONS] = sim->viscous[TWO_FLUID_F].iterations;
+  value[WALL_SECONDS] = model->wall_seconds;
+}
+
+static void measure(struct model *model, double value[],
+                    struct model_outline *outline) {
+  struct two_fluid *sim = of(model);
+  struct two_fluid_measures m;
+  two_fluid_measure(sim, &m);
+  if (model->step == 0) sim->initial = two_fluid_energy(sim);
+  set_row(sim, &m, value);
+  if (outline) {
+    memset(outline, 0, sizeof *outline);
+    outline->outline = m.outline;
+  } else {
+    outline_free(&m.outline);
+  }
+}
+
+/* Scalars of checkpoints */
+
+#define AT(member) offsetof(struct two_fluid, member)
+static const struct scalar SCALARS[] = {
+    {"travel", SCALAR_REAL, AT(travel), 0, DBL_MAX},
+    {"slow_time", SCALAR_REAL, AT(slow_time), 0, DBL_MAX},
+    {"largest_viscosity", SCALAR_REAL, AT(eta_max), 0, DBL_MAX},
+    {"initial_energy", SCALAR_REAL, AT(initial), -DBL_MAX, DBL_MAX}};
+
+static const char *const STAGES[TWO_FLUID_NSTAGES] = {
+    [TWO_FLUID_CLOSURES] = "closures",
+    [TWO_FLUID_VISCOUS] = "viscous solves",
+    [TWO_FLUID_PRESSURE] = "pressure of grains",
+    [TWO_FLUID_PROJECTION] = "projection",
+    [TWO_FLUID_TRANSPORT] = "transport",
+    [TWO_FLUID_ADAPTATION] = "adaptation",
+    [TWO_FLUID_OTHER] = "other"};
+
+const struct model_kind two_fluid_model = {
+    .keys = &two_fluid_model_keys,
+    .start = start,
+    .resume = resume,
+    .destroy = destroy,
+    .advance = advance,
+    .is_at_rest = is_at_rest,
+    .measure = measure,
+    .outputs = outputs,
+    .columns = COLUMNS,
+    .ncolumns = NCOLUMNS,
+    .scalars = SCALARS,
+    .nscalars = sizeof SCALARS / sizeof *SCALARS,
+    .stages = STAGES,
+    .nstages = TWO_FLUID_NSTAGES};

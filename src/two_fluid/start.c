@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_fluid/start.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/depths.h"
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/log.h"
+#include "talus/minmax.h"
+#include "talus/model.h"
+#include "talus/openings.h"
+#include "talus/outline.h"
+#include "talus/shapes.h"
+#include "talus/two_fluid/state.h"
+#include "talus/two_fluid_grains.h"
+
+/* Viscosity of the grains is capped where a slope creeps at this times sqrt(g
+ * H). */
+static const double CREEP = 1e-4;
+
+/* How leaves are filled. */
+struct filling {
+  int axis;                    /* vertical */
+  int fineness;                /* of parts of leaves */
+  const struct depths *depths; /* NULL: one solid fraction */
+};
+
+/* Return the weight of grains that fill their volume, less buoyancy, N/m^3. */
+static double weight_of(const struct two_fluid *sim, int axis) {
+  return fabs(sim->params->gravity[axis]) *
+         (two_fluid_density(sim, TWO_FLUID_S) -
+          two_fluid_density(sim, TWO_FLUID_F));
+}
+
+static double packed(const void *context, double p) {
+  const struct two_fluid *sim = context;
+  return two_fluid_settled(&sim->closure, p, sim->keys->phi_p);
+}
+
+/* Set alpha and phi_p of a leaf that the grains fill by the part c. */
+static void fill_leaf(struct two_fluid *sim, const struct filling *by,
+                      int32_t i, const double x[3], double c) {
+  const struct params *params = sim->params;
+  const struct two_fluid_keys *keys = sim->keys;
+  const bool deep = params->gravity[by->axis] != 0;
+  const double depth =
+      deep && c > 0
+          ? depths_below(params, by->axis, 0.25 * sim->grid.mesh->h[i], x)
+          : 0;
+  double alpha = keys->alpha_start;
+  sim->phi_p->v[i] = keys->phi_p;
+  if (by->depths && c > 0) alpha = depths_at(by->depths, depth);
+  if (keys->start == TWO_FLUID_DENSE)
+    sim->phi_p->v[i] = two_fluid_plastic_of(
+        &sim->closure, alpha, depth * alpha * weight_of(sim, by->axis));
+  sim->alpha->v[i] = c * alpha;
+}
+
+static void fill_state(struct two_fluid *sim, const struct filling *by) {
+  const struct params *params = sim->params;
+  const struct mesh *mesh = sim->grid.mesh;
+  double (*fraction)(shape_level_set f, void *context, const double centre[DIM],
+                     double h, int depth) =
+      mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double x[3] = {0};
+    for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
+    int depth = params->level_max - mesh->level[i] + by->fineness;
+    if (depth > 6) depth = 6;
+    const double c = params->shape.eval
+                         ? fraction(params->shape.eval, params->shape.context,
+                                    mesh->x[i], mesh->h[i], depth)
+                         : 1;
+    fill_leaf(sim, by, i, x, c);
+    for (int e = 0; e < DIM; e++) {
+      const struct function *u = &params->velocity[e];
+      const double value = u->eval ? u->eval(u->context, x) : 0;
+      for (int k = 0; k < TWO_FLUID_NPHASES; k++) sim->u[k][e]->v[i] = value;
+    }
+  }
+}
+
+static void adapt_to_state(struct two_fluid *sim, struct filling *by,
+                           int fineness) {
+  by->fineness = fineness;
+  fill_state(sim, by);
+  for (int k = 0; k <= 2 * sim->params->level_max; k++) {
+    if (!two_fluid_adapt(sim)) break;
+    fill_state(sim, by);
+  }
+}
+
+/* Set the fluxes of the velocities, on all faces. */
+static void set_fluxes(struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  field_fill(mesh, sim->alpha);
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++)
+    field_fill_many(mesh, DIM, sim->u[k]);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *node = mesh->face_node[f];
+      const double *u = sim->u[TWO_FLUID_F][d]->v, *alpha = sim->alpha->v;
+      const double mean = 0.5 * (u[node[0]] + u[node[1]]);
+      sim->j->v[f] = mean;
+      sim->flux->v[f] = two_fluid_is_side(sim, f)
+                            ? 0
+                            : 0.5 * (alpha[node[0]] + alpha[node[1]]) * mean;
+    }
+  }
+  field_fill_faces(mesh, sim->j);
+  field_fill_faces(mesh, sim->flux);
+}
+
+/* Return the height of the grains, m. */
+static double height_of(const struct two_fluid *sim, int axis) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (!two_fluid_has_grains(sim, i)) continue;
+    low = min2(low, mesh->x[i][axis] - 0.5 * mesh->h[i]);
+    high = max2(high, mesh->x[i][axis] + 0.5 * mesh->h[i]);
+  }
+  const double height = mesh_max(mesh, high) + mesh_max(mesh, -low);
+  return isfinite(height) ? height : 0;
+}
+
+/* Choose the cap on the viscosity of the grains, and say what it lets them
+ * creep at. */
+static void set_cap(struct two_fluid *sim, int axis) {
+  const double g = fabs(sim->params->gravity[axis]);
+  const double H = height_of(sim, axis);
+  const double load = weight_of(sim, axis) * sim->keys->alpha_start * H;
+  sim->eta_max = sim->keys->eta_max;
+  if (sim->eta_max == 0)
+    sim->eta_max = load > 0 ? 0.5 * load * H / (CREEP * sqrt(g * H)) : 1e30;
+  if (load > 0)
+    log_info(
+        "viscosity of the grains is at most %.3g Pa s: a slope of 20 degrees, "
+        "%.3g m high, creeps at %.3g m/s",
+        sim->eta_max, H, 0.5 * 0.342 * load * H / sim->eta_max);
+}
+
+/* Warn of what a patched start means. */
+static void say_pressure(const struct two_fluid *sim, int axis) {
+  const double phi = sim->keys->alpha_start;
+  const struct two_fluid_frozen with = {.phi_p = sim->keys->phi_p};
+  const double p = two_fluid_pressure(&sim->closure, phi, &with, NULL);
+  const double weight = weight_of(sim, axis) * phi * height_of(sim, axis);
+  log_info(
+      "grains begin at a solid fraction of %g, where they hold %.3g Pa: %.3g "
+      "times the weight of the heap on its floor",
+      phi, p, weight > 0 ? p / weight : 0);
+}
+
+static void check_boundaries(const struct params *params) {
+  for (int b = 0; b < params->nboundaries; b++) {
+    const struct boundary *boundary = &params->boundary[b];
+    if (boundary->type == BOUNDARY_INFLOW && boundary->fraction > 0)
+      USER_ERROR(
+          "model = \"two_fluid\": an inflow brings a solid fraction of %g, but "
+          "only fluid passes the sides of the box: take fraction = 0",
+          boundary->fraction);
+  }
+}
+
+static void check_packing(const struct two_fluid *sim) {
+  const double densest = two_fluid_densest(&sim->closure);
+  if (sim->keys->alpha_start >= densest)
+    USER_ERROR(
+        "grains.alpha_start = %g: the densest packing of these closures is %g; "
+        "take less, 0.55 to 0.60 are common",
+        sim->keys->alpha_start, densest);
+}
+
+struct two_fluid *two_fluid_new(const struct params *params,
+                                const struct model_start *start) {
+  struct forest_layout layout;
+  check_boundaries(params);
+  grid_layout(params, &layout);
+  const int level =
+      params->ncriteria > 0 ? params->level_min : params->level_max;
+  struct two_fluid *sim =
+      two_fluid_new_on(params, forest_new(MPI_COMM_WORLD, &layout, level));
+  sim->grid.most_leaves = start->most_leaves;
+  check_packing(sim);
+  const int axis = outline_axis(params->gravity);
+  const bool settled =
+      sim->keys->start == TWO_FLUID_SETTLED && params->gravity[axis] != 0;
+  struct depths depths = {0};
+  if (settled)
+    depths = depths_new(weight_of(sim, axis),
+                        params->size * params->trees[axis], packed, sim);
+  struct filling by = {axis, 3, settled ? &depths : NULL};
+  if (params->ncriteria > 0) {
+    adapt_to_state(sim, &by, 0);
+    adapt_to_state(sim, &by, 3);
+  } else {
+    fill_state(sim, &by);
+  }
+  openings_check(&sim->grid);
+  set_fluxes(sim);
+  set_cap(sim, axis);
+  if (!settled) say_pressure(sim, axis);
+  depths_free(&depths);
+  return sim;
+}

@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_fluid/state.h"
+#include "talus/two_fluid_grains.h"
+
+#include "talus/error.h"
+#include "talus/forest.h"
+#include "talus/memory.h"
+#include "talus/minmax.h"
+#include "talus/openings.h"
+#include "talus/remap.h"
+
+/* Set the conditions of one boundary for the velocity of a phase, on a patch
+ * across `axis`. Where fluid passes, grains find a smooth wall. */
+static void set_velocity(struct two_fluid *sim, int phase, int patch, int axis,
+                         const struct boundary *boundary) {
+  const enum boundary_type type = boundary->type;
+  const bool fluid = phase == TWO_FLUID_F;
+  for (int e = 0; e < DIM; e++) {
+    struct bc *bc = &sim->u[phase][e]->bc[patch];
+    *bc = (struct bc){BC_DIRICHLET, 0, 0};
+    if (fluid && type == BOUNDARY_INFLOW) {
+      bc->value = boundary->velocity[e];
+    } else if (fluid && type == BOUNDARY_OUTFLOW) {
+      bc->type = BC_NEUMANN;
+    } else if (e == axis) {
+      continue;
+    } else if (type == BOUNDARY_NO_SLIP) {
+      bc->value = boundary->velocity[e];
+    } else if (type == BOUNDARY_NAVIER) {
+      bc->type = BC_ROBIN, bc->length = boundary->slip_length;
+    } else {
+      bc->type = BC_NEUMANN;
+    }
+  }
+}
+
+static void set_patch(struct two_fluid *sim, int patch, int axis,
+                      const struct boundary *boundary) {
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++)
+    set_velocity(sim, k, patch, axis, boundary);
+  if (boundary->type == BOUNDARY_OUTFLOW)
+    sim->p->bc[patch] = (struct bc){BC_DIRICHLET, boundary->pressure, 0};
+}
+
+static void set_boundaries(struct two_fluid *sim) {
+  const struct params *params = sim->params;
+  for (int side = 0; side < NFACE; side++) {
+    set_patch(sim, side, side / 2, &params->boundary[side]);
+  }
+  for (int b = 6; b < params->nboundaries; b++) {
+    for (int axis = 0; axis < DIM; axis++) {
+      set_patch(sim, openings_patch_number(b, axis), axis,
+                &params->boundary[b]);
+    }
+  }
+}
+
+/* Return the limited slope along d over the old leaf i. */
+static double old_slope(const struct remap *remap, const double *v, int32_t i,
+                        int d) {
+  const int32_t *node = remap->mesh->stencil[i];
+  const double lower = v[node[stencil_face(2 * d)]];
+  const double upper = v[node[stencil_face(2 * d + 1)]];
+  return granular_minmod(v[i] - lower, upper - v[i]);
+}
+
+/* Lay new leaves on limited slopes of the old one: the mean is kept and nothing
+ * falls below 0. */
+static double divide_mass(const struct remap *remap, const struct field *field,
+                          int32_t leaf) {
+  double lo[DIM], hi[DIM];
+  const int32_t i = remap_box(remap, leaf, lo, hi);
+  double value = field->v[i];
+  for (int d = 0; d < DIM; d++) {
+    value += 0.5 * (lo[d] + hi[d]) * old_slope(remap, field->v, i, d);
+  }
+  return value;
+}
+
+/* Take the mean of what each part of a phase has. */
+static double merge_by(const struct remap *remap, const struct field *field,
+                       int32_t leaf, int phase) {
+  const struct two_fluid *sim = field->context;
+  const int32_t first = remap->map->first[leaf];
+  double sum = 0, mass = 0;
+  for (int32_t i = first; i < first + remap->map->count[leaf]; i++) {
+    const double m =
+        two_fluid_part(phase, sim->alpha->v[i]) * remap_weight(remap, leaf, i);
+    sum += m * field->v[i];
+    mass += m;
+  }
+  return mass > 0 ? sum / mass : field->v[first];
+}
+
+static double merge_solid(const struct remap *remap, const struct field *field,
+                          int32_t leaf) {
+  return merge_by(remap, field, leaf, TWO_FLUID_S);
+}
+
+static double merge_fluid(const struct remap *remap, const struct field *field,
+                          int32_t leaf) {
+  return merge_by(remap, field, leaf, TWO_FLUID_F);
+}
+
+static const struct field_rule mass_rule = {divide_mass, remap_content};
+static const struct field_rule solid_rule = {remap_value, merge_solid};
+static const struct field_rule fluid_rule = {remap_value, merge_fluid};
+
+static struct field *add(struct two_fluid *sim, const char *name,
+                         const char *unit, const char *title,
+                         const struct field_rule *rule, bool output) {
+  struct field *field = fields_add(&sim->grid.fields, sim->grid.mesh, name,
+                                   unit, title, FIELD_CELL, rule);
+  field->output = output;
+  field->restart = rule != NULL;
+  field->context = sim;
+  return field;
+}
+
+static struct field *add_face(struct two_fluid *sim, const char *name) {
+  return fields_add(&sim->grid.fields, sim->grid.mesh, name, "", "", FIELD_FACE,
+                    NULL);
+}
+
+static struct field *add_kept_face(struct two_fluid *sim, const char *name,
+                                   const char *title,
+                                   const struct field_rule *rule) {
+  struct field *field = fields_add(&sim->grid.fields, sim->grid.mesh, name,
+                                   "m/s", title, FIELD_FACE, rule);
+  field->restart = true;
+  return field;
+}
+
+static void add_state(struct two_fluid *sim) {
+  static const char *const name[TWO_FLUID_NPHASES][3] = {
+      {"solid_velocity_x", "solid_velocity_y", "solid_velocity_z"},
+      {"fluid_velocity_x", "fluid_velocity_y", "fluid_velocity_z"}};
+  static const char *const title[] = {"momentum of the grains over mass",
+                                      "velocity of the fluid"};
+  static const struct field_rule *const rule[] = {&solid_rule, &fluid_rule};
+  sim->alpha = add(sim, "solid_fraction", "1", "solid fraction of grains",
+                   &mass_rule, true);
+  sim->alpha->low = 0, sim->alpha->high = 1;
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
+    for (int d = 0; d < DIM; d++) {
+      sim->u[k][d] = add(sim, name[k][d], "m/s", title[k], rule[k], true);
+      sim->u[k][d]->component = d;
+    }
+  }
+  sim->p = add(sim, "excess_pressure", "Pa",
+               "pressure of the fluid less that at rest", &remap_linear, true);
+  const bool plastic = sim->closure.set == TWO_FLUID_CRITICAL_STATE;
+  sim->phi_p = add(sim, "plastic_packing", "1", "packing that carries no load",
+                   &solid_rule, plastic);
+  sim->X = add(sim, "shear_stress", "Pa", "shear that makes pressure",
+               &solid_rule, false);
+  sim->flux = add_kept_face(sim, "solid_flux", "volume flux of the grains",
+                            &remap_faces);
+  sim->j = add_kept_face(sim, "total_flux", "volume flux of grains and fluid",
+                         &remap_flux);
+}
+
+static void add_leaves(struct two_fluid *sim) {
+  static const char *const mean[] = {"velocity_x", "velocity_y", "velocity_z"};
+  static const char *const upper[] = {"upper_x", "upper_y", "upper_z"};
+  const bool kinetic = sim->closure.set == TWO_FLUID_KTGF;
+  sim->alpha_new = add(sim, "next_solid_fraction", "1", "", NULL, false);
+  sim->load = add(sim, "load", "Pa", "", NULL, false);
+  sim->hardening = add(sim, "hardening", "Pa", "", NULL, false);
+  sim->p_s =
+      add(sim, "solid_pressure", "Pa", "pressure of the grains", NULL, true);
+  sim->weight = add(sim, "weight", "1", "", NULL, false);
+  sim->inertia = add(sim, "inertia", "kg/m^3", "", NULL, false);
+  sim->Theta =
+      add(sim, "temperature", "m^2/s^2", "granular temperature", NULL, kinetic);
+  sim->shear =
+      add(sim, "shear_rate", "1/s", "shear rate of the grains", NULL, true);
+  sim->eta = add(sim, "fluid_viscosity", "Pa s", "", NULL, false);
+  sim->drag = add(sim, "drag", "kg/m^3/s", "", NULL, false);
+  sim->c = add(sim, "fraction", "1",
+               "solid fraction over that of the start, at most 1", NULL, true);
+  for (int d = 0; d < DIM; d++) {
+    sim->upper[d] = add(sim, upper[d], "1", "", NULL, false);
+    sim->mean[d] = add(sim, mean[d], "m/s",
+                       "flux of the grains over their fraction", NULL, true);
+    sim->mean[d]->component = d;
+    sim->mean[d]->on_demand = true;
+    mem_free(sim->mean[d]->v);
+    sim->mean[d]->v = NULL;
+  }
+}
+
+static void add_faces(struct two_fluid *sim) {
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
+    const bool solid = k == TWO_FLUID_S;
+    sim->shear_f[k] = add_face(sim, solid ? "solid_shear" : "fluid_shear");
+    sim->eta_f[k] = add_face(sim, solid ? "solid_eta" : "fluid_eta");
+    sim->kappa_f[k] = add_face(sim, solid ? "solid_kappa" : "fluid_kappa");
+    sim->w_f[k] = add_face(sim, solid ? "solid_w" : "fluid_w");
+    sim->v_f[k] = add_face(sim, solid ? "solid_v" : "fluid_v");
+  }
+  sim->drag_f = add_face(sim, "face_drag");
+  sim->mobility_f = add_face(sim, "mobility");
+  sim->lambda_f = add_face(sim, "mixture_mobility");
+  sim->force_f = add_face(sim, "face_force");
+  scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, 3 * DIM + 1,
+               4);
+}
+
+/* Take the numbers of the case for the closures. */
+static void set_closure(struct two_fluid *sim) {
+  const struct two_fluid_keys *keys = sim->keys;
+  struct two_fluid_closure *c = &sim->closure;
+  *c = keys->closure;
+  if (keys->fluid != TWO_FLUID_OWN) two_fluid_take_fluid(c, keys->fluid);
+  for (int k = TWO_FLUID_FLUID_DENSITY; k <= TWO_FLUID_FLUID_N; k++)
+    if (keys->closure.param[k] != 0) c->param[k] = keys->closure.param[k];
+  if (c->param[TWO_FLUID_FLUID_ETA_INF] == 0)
+    c->param[TWO_FLUID_FLUID_ETA_INF] = c->param[TWO_FLUID_FLUID_ETA_0];
+  c->param[TWO_FLUID_GRAINS_DENSITY] = sim->params->grains.density;
+  if (!(c->param[TWO_FLUID_FLUID_DENSITY] > 0))
+    USER_ERROR(
+        "fluid.density is missing: a fluid that has no name, %s, needs "
+        "density and eta_0",
+        "as \"water\" is one");
+  const char *wrong = two_fluid_prepare(c);
+  if (wrong != NULL)
+    USER_ERROR("closures of grains of %g kg/m^3 in a fluid of %g kg/m^3: %s",
+               c->param[TWO_FLUID_GRAINS_DENSITY],
+               c->param[TWO_FLUID_FLUID_DENSITY], wrong);
+}
+
+struct two_fluid *two_fluid_new_on(const struct params *params,
+                                   struct forest *forest) {
+  struct two_fluid *sim = MEM_NEW(struct two_fluid, 1);
+  sim->model.grid = &sim->grid;
+  sim->params = params;
+  sim->keys = params->own;
+  set_closure(sim);
+  grid_init(&sim->grid, params, forest);
+  add_state(sim);
+  add_leaves(sim);
+  add_faces(sim);
+  set_boundaries(sim);
+  return sim;
+}
+
+void two_fluid_destroy(struct two_fluid *sim) {
+  if (!sim) return;
+  grid_release(&sim->grid);
+  mem_free(sim);
+}
+
+/* Set what the criteria follow: 1 where grains touch, less where they are
+ * loose, 0 where there are hardly any. */
+static void set_followed(struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double alpha = sim->alpha->v[i];
+    const double full =
+        0.9 * two_fluid_loosest(&sim->closure, sim->phi_p->v[i]);
+    sim->c->v[i] = alpha < 1e-3 * full ? 0 : min2(alpha / full, 1);
+  }
+  mesh_touch(mesh, sim->c->v);
+}
+
+bool two_fluid_adapt(struct two_fluid *sim) {
+  const struct followed followed = {.c = sim->c, .u = sim->u[TWO_FLUID_S]};
+  set_followed(sim);
+  sim->travel = 0;
+  return adapt_grid(&sim->grid, &followed);
+}

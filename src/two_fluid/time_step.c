@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_fluid/time_step.h"
+
+#include <math.h>
+
+#include "talus/minmax.h"
+#include "talus/two_fluid/state.h"
+
+/* dt is at most WAVE times sqrt(h/g') of the finest leaves, g' the weight of
+ * grains in the fluid over their mass, begins with a quarter of that, and grows
+ * by at most DT_GROWTH. */
+#define WAVE 0.4
+#define DT_FIRST 0.25
+#define DT_GROWTH 1.2
+/* Grains that are more than PACKED change alpha by at most this part of it. */
+#define DT_CHANGE 0.2
+#define PACKED 0.4
+
+/* Return the rate of a phase in leaf i, of a flux through faces. */
+static double rate_of(const struct two_fluid *sim, int32_t i, double alpha,
+                      const double *flux) {
+  return alpha > TWO_FLUID_NONE ? mesh_turnover(sim->grid.mesh, flux, i) / alpha
+                                : 0;
+}
+
+/* Return that of the fluid, whose flux is j less that of the grains. */
+static double fluid_rate(const struct two_fluid *sim, int32_t i) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const int32_t *face = mesh->cell_face[i];
+  double sum = 0;
+  for (int s = 0; s < NFACE; s++)
+    sum += fabs(sim->j->v[face[s]] - sim->flux->v[face[s]]);
+  return 0.5 * sum / (mesh_width(mesh, i) * (1 - sim->alpha->v[i]));
+}
+
+double two_fluid_rate(const struct two_fluid *sim) {
+  double most = 0;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    most = max2(most, rate_of(sim, i, sim->alpha->v[i], sim->flux->v));
+    most = max2(most, fluid_rate(sim, i));
+  }
+  return mesh_max(sim->grid.mesh, most);
+}
+
+/* Return the largest |div(alpha u_s)|/alpha where grains are packed. */
+static double change_rate(const struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double most = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double alpha = sim->alpha->v[i];
+    if (alpha < PACKED) continue;
+    most = max2(most, fabs(mesh_divergence(mesh, sim->flux->v, i)) / alpha);
+  }
+  return mesh_max(mesh, most);
+}
+
+/* Return the dt in which waves of grains under fluid cross a leaf of the
+ * finest: grains move, with what they weigh, before their weight is felt. */
+static double wave_bound(const struct two_fluid *sim) {
+  const struct params *params = sim->params;
+  const double h = params->size / exp2(sim->grid.mesh->level_finest);
+  const double buoyancy =
+      two_fluid_density(sim, TWO_FLUID_F) / two_fluid_density(sim, TWO_FLUID_S);
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  const double g = (1 - buoyancy) * sqrt(g2);
+  return g > 0 ? WAVE * sqrt(h / g) : HUGE_VAL;
+}
+
+double two_fluid_time_step(const struct two_fluid *sim, double dt_max) {
+  const struct params *params = sim->params;
+  double dt = min2(dt_max, params->dt_max);
+  const double rate = two_fluid_rate(sim), change = change_rate(sim);
+  if (rate > 0) dt = min2(dt, params->cfl / rate);
+  if (change > 0) dt = min2(dt, DT_CHANGE / change);
+  const double wave = wave_bound(sim);
+  dt = min2(dt, wave);
+  dt =
+      min2(dt, sim->model.dt > 0 ? DT_GROWTH * sim->model.dt : DT_FIRST * wave);
+  return dt < dt_max && dt_max < 2 * dt ? 0.5 * dt_max : dt;
+}

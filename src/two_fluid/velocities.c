@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "talus/two_fluid/velocities.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "talus/minmax.h"
+#include "talus/two_fluid/pressures.h"
+#include "talus/two_fluid/properties.h"
+#include "talus/two_fluid/state.h"
+#include "talus/two_fluid_pair.h"
+#include "talus/viscous.h"
+
+/* Friction is found PICARD times, with the shear rates of the last solve. */
+enum { PICARD = 2 };
+
+/* Return m of a phase in leaf i, > 0. */
+static double mass_of(const struct two_fluid *sim, int phase, int32_t i) {
+  const double part = two_fluid_part(phase, sim->alpha->v[i]);
+  return two_fluid_density(sim, phase) * max2(part, TWO_FLUID_NONE);
+}
+
+/* Return k = dt K of leaf i. */
+static double drag_of(const struct two_fluid *sim, double dt, int32_t i) {
+  return dt * sim->drag->v[i] * max2(sim->alpha->v[i], 0);
+}
+
+/* Return theta, which of an alpha and K/alpha; of a leaf or of a face. */
+static double share(const struct two_fluid *sim, double dt, double alpha,
+                    double drag) {
+  const double k = dt * drag * max2(alpha, 0);
+  const double m = two_fluid_density(sim, TWO_FLUID_F) * (1 - alpha);
+  return k > 0 ? k / (max2(m, 0) + k) : 0;
+}
+
+/* Find the largest speed of both phases, the walls and free fall over dt. */
+static double speed_scale(const struct two_fluid *sim, double dt) {
+  double most = 1e-300;
+  for (int d = 0; d < DIM; d++) {
+    most = max2(most, dt * fabs(sim->params->gravity[d]));
+    for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
+      const struct field *u = sim->u[k][d];
+      for (int b = 0; b < MESH_MAX_PATCHES; b++)
+        most = max2(most, fabs(u->bc[b].value));
+      for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
+        most = max2(most, fabs(u->v[i]));
+    }
+  }
+  return mesh_max(sim->grid.mesh, most);
+}
+
+/* Add the solves of a step up: all iterations, the worst result. */
+static void add_solve(struct solve_stats *sum, const struct solve_stats *next) {
+  const int iterations = sum->iterations + next->iterations;
+  if (sum->iterations == 0 || next->residual_after > sum->residual_after)
+    *sum = *next;
+  sum->iterations = iterations;
+}
+
+/* Solve for the velocity of a phase; u: guess, solution. tolerance in m/s. */
+static void solve(struct two_fluid *sim, int phase, double dt,
+                  const double *eta_f, const double *mass,
+                  double *const rhs[DIM], double tolerance) {
+  const struct bc *bc[DIM];
+  double *u[DIM];
+  const struct viscosity viscosity = {.eta_f = eta_f,
+                                      .kappa_f = sim->kappa_f[phase]->v};
+  field_arrays(sim->u[phase], u);
+  for (int e = 0; e < DIM; e++) bc[e] = sim->u[phase][e]->bc;
+  const struct solve_stats stats =
+      viscous_solve(sim->grid.mesh, sim->grid.hierarchy, mass, &viscosity, dt,
+                    rhs, bc, tolerance, sim->params->max_iterations, u);
+  add_solve(&sim->viscous[phase], &stats);
+}
+
+/* Set theta alpha_f eta_f on faces, which the grains feel of the fluid, and
+ * `all` to that and their own. */
+static void set_shared(struct two_fluid *sim, double dt, double *shared,
+                       double *all) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *alpha = sim->alpha->v;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const int32_t *node = mesh->face_node[f];
+    const double mean = 0.5 * (alpha[node[0]] + alpha[node[1]]);
+    shared[f] =
+        share(sim, dt, mean, sim->drag_f->v[f]) * sim->eta_f[TWO_FLUID_F]->v[f];
+    all[f] = shared[f] + sim->eta_f[TWO_FLUID_S]->v[f];
+  }
+  mesh_fill_faces(mesh, 2, (double *const[]){shared, all});
+}
+
+/* Leave in u_s its value without pressure, weight and drag: u_s* of the header.
+ * rhs [DIM] and mass are those of the solve. */
+static void keep_solid(struct two_fluid *sim, double dt, const double *shared,
+                       const double *mass, double *const rhs[DIM],
+                       double *const force[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *u[DIM];
+  field_arrays(sim->u[TWO_FLUID_S], u);
+  const struct viscosity fluid = {.eta_f = shared,
+                                  .kappa_f = sim->kappa_f[TWO_FLUID_F]->v};
+  viscous_force(mesh, &fluid, u, force);
+  for (int e = 0; e < DIM; e++) {
+    const double *before = sim->u[TWO_FLUID_S][e]->saved;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const double both = mass[i] * u[e][i] - rhs[e][i];
+      force[e][i] =
+          before[i] + (both - dt * force[e][i]) / mass_of(sim, TWO_FLUID_S, i);
+    }
+  }
+}
+
+static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
+                        double *const star[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *cell[DIM + 1], *face[2], *a = sim->alpha_new->v;
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM + 1, cell);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
+  double **rhs = cell, *mass = cell[DIM];
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double theta = share(sim, dt, sim->alpha->v[i], sim->drag->v[i]);
+    mass[i] =
+        mass_of(sim, TWO_FLUID_S, i) + theta * mass_of(sim, TWO_FLUID_F, i);
+  }
+  for (int e = 0; e < DIM; e++) {
+    double *u_s = sim->u[TWO_FLUID_S][e]->v;
+    const double *u_f = sim->u[TWO_FLUID_F][e]->v;
+    two_fluid_leaf_force(sim, TWO_FLUID_S, e, a);
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      const double m_s = mass_of(sim, TWO_FLUID_S, i);
+      u_s[i] += dt * a[i];
+      rhs[e][i] = m_s * u_s[i] + (mass[i] - m_s) * (u_f[i] + dt * b[e][i]);
+    }
+    mesh_touch(mesh, u_s);
+  }
+  for (int k = 0; k < PICARD; k++) {
+    two_fluid_calm(sim);
+    two_fluid_viscosities(sim);
+    set_shared(sim, dt, face[0], face[1]);
+    solve(sim, TWO_FLUID_S, dt, face[1], mass, rhs,
+          sim->params->tolerance_viscous * sim->scale);
+  }
+  two_fluid_calm(sim);
+  two_fluid_shear_leaves(sim);
+  keep_solid(sim, dt, face[0], mass, rhs, star);
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Solve for the fluid and leave u_f* in its velocity. */
+static void solve_fluid(struct two_fluid *sim, double dt,
+                        double *const b[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *cell[DIM + 1], least = 1;
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM + 1, cell);
+  double **rhs = cell, *mass = cell[DIM];
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double m = mass_of(sim, TWO_FLUID_F, i), k = drag_of(sim, dt, i);
+    mass[i] = m + k;
+    least = min2(least, m / mass[i]);
+    for (int e = 0; e < DIM; e++) {
+      rhs[e][i] = m * (sim->u[TWO_FLUID_F][e]->v[i] + dt * b[e][i]) +
+                  k * sim->u[TWO_FLUID_S][e]->v[i];
+    }
+  }
+  least = -mesh_max(mesh, -least); /* what drag makes of an error in u_f */
+  solve(sim, TWO_FLUID_F, dt, sim->eta_f[TWO_FLUID_F]->v, mass, rhs,
+        least * sim->params->tolerance_viscous * sim->scale);
+  for (int e = 0; e < DIM; e++) {
+    double *u = sim->u[TWO_FLUID_F][e]->v;
+    const double *before = sim->u[TWO_FLUID_F][e]->saved;
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      u[i] = before[i] +
+             (mass[i] * u[i] - rhs[e][i]) / mass_of(sim, TWO_FLUID_F, i);
+    mesh_touch(mesh, u);
+  }
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Take u_s* [DIM][nleaves] for the velocity of the grains. */
+static void take_solid(struct two_fluid *sim, double *const star[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int e = 0; e < DIM; e++) {
+    memcpy(sim->u[TWO_FLUID_S][e]->v, star[e],
+           (size_t)mesh->nleaves * sizeof(double));
+    mesh_touch(mesh, sim->u[TWO_FLUID_S][e]->v);
+  }
+}
+
+void two_fluid_velocities(struct two_fluid *sim, double dt) {
+  double *b[DIM], *star[DIM];
+  scratch_take(&sim->scratch, FIELD_CELL, "forces", DIM, b);
+  scratch_take(&sim->scratch, FIELD_CELL, "velocity", DIM, star);
+  two_fluid_fill_pressure(sim, dt);
+  for (int e = 0; e < DIM; e++) two_fluid_leaf_force(sim, TWO_FLUID_F, e, b[e]);
+  sim->scale = speed_scale(sim, dt);
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++)
+    sim->viscous[k] = (struct solve_stats){0};
+  solve_solid(sim, dt, b, star);
+  solve_fluid(sim, dt, b);
+  take_solid(sim, star);
+  scratch_give(&sim->scratch, "forces");
+  scratch_give(&sim->scratch, "velocity");
+  two_fluid_calm(sim);
+  field_fill_many(sim->grid.mesh, DIM, sim->u[TWO_FLUID_F]);
+}

@@ -1,0 +1,82 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Runs of model = "two_fluid": restart bit for bit, the same on two ranks, wrong
+# cases refused. Usage: two_fluid.sh BUILD
+. "$(dirname "$0")/common.bash"
+talus=$build/talus
+
+# ends STATUS WORDS...: the command ends with this status
+ends() {
+  local expected=$1 status
+  shift
+  timeout "$limit" "$@" > output 2>&1
+  status=$?
+  [ $status -eq "$expected" ] || complain "$*: exit status $status"
+}
+
+says() {
+  grep -q "$1" output || complain "nothing matches $1"
+}
+
+# numbers DIR: series.csv without the wall clock
+numbers() {
+  sed 's/,[^,]*$//' "$1/series.csv"
+}
+
+cat > cliff.lua << 'END'
+local phi = param("phi", 0.6, "solid fraction")
+return {
+  model = "two_fluid", dimension = 2,
+  domain = { size = 0.4, level = 5, level_min = 3 },
+  gravity = { 0, -9.81 },
+  grains = { density = param("density", 2560, "kg/m^3"), d = 1e-3,
+             alpha_start = phi, start = param("start", "settled", "start"),
+             eta_max = param("eta_max", 0, "Pa s"),
+             shape = function(x, y) return math.min(0.1 - x, 0.1 - y) end },
+  fluid = param("fluid", "water", "fluid"), closure = "ktgf",
+  boundary = { left = "slip", right = "no_slip", bottom = "no_slip",
+               top = "slip" },
+  adapt = { { "interface", width = 2 }, { "inside" } },
+  output = { stop = param("stop", 0.1, "s") },
+}
+END
+ends 0 "$talus" run cliff.lua -o whole --quiet
+ends 5 "$talus" run cliff.lua -o parts --quiet --max-steps 9
+ends 0 "$talus" run cliff.lua -o parts --quiet --restart
+diff <(numbers whole) <(numbers parts) > output ||
+  complain "a restart changes series.csv"
+diff whole/profile.csv parts/profile.csv > output ||
+  complain "a restart changes profile.csv"
+
+ends 0 mpirun --oversubscribe -n 2 "$build/talus2d" run cliff.lua -o ranks \
+  --quiet
+# fronts differ by less than the solvers' tolerance lets through
+paste -d, <(tail -n 1 whole/series.csv | cut -d, -f5) \
+  <(tail -n 1 ranks/series.csv | cut -d, -f5) |
+  awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
+  complain "two ranks have another front"
+
+ends 2 "$talus" run cliff.lua phi=0.7 start=patched -o wrong
+says 'densest packing of these closures is 0.63'
+ends 2 "$talus" run cliff.lua density=900 -o wrong
+says 'as dense as the grains or denser'
+ends 2 "$talus" check cliff.lua eta_max=-1
+says 'eta_max'
+ends 2 "$talus" check cliff.lua fluid=oil
+says '"air", "water", "pac2", "pac4"'
+sed 's/fluid = param.*closure/fluid = { eta_0 = 1 }, closure/' cliff.lua > own.lua
+ends 2 "$talus" run own.lua -o wrong
+says 'fluid.density is missing'
+sed 's/fluid = param.*closure/fluid = { "water", eta_0 = -1 }, closure/' \
+  cliff.lua > own.lua
+ends 2 "$talus" check own.lua
+says 'fluid.eta_0'
+sed 's/top = "slip"/top = { "inflow", velocity = { 0, -1 }, fraction = 0.5 }/' \
+  cliff.lua > in.lua
+ends 2 "$talus" run in.lua -o wrong
+says 'only fluid passes the sides'
+sed 's/d = 1e-3/d = 1e-3, rho_d = 2/' cliff.lua > key.lua
+ends 2 "$talus" check key.lua
+says 'rho_d'
+
+[ "$failures" -eq 0 ]

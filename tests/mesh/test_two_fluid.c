@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The two-fluid model on small grids. */
+#include "two_fluid.h"
+
+#include <check.h>
+#include <stdio.h>
+
+#include "grid.h"
+
+Suite *two_fluid_suite(void);
+
+enum { LEVEL = DIM == 2 ? 5 : 3 };
+
+/* Ask for fine leaves in the left half and around the surface, or below and
+ * around it. */
+static double left(void *context, const double x[3]) {
+  (void)context;
+  return x[0] < 0.08 || x[DIM - 1] > 0.07 ? LEVEL : LEVEL - 1;
+}
+static double deep(void *context, const double x[3]) {
+  (void)context;
+  return x[DIM - 1] < 0.03 || x[DIM - 1] > 0.07 ? LEVEL : LEVEL - 1;
+}
+
+static struct params with_levels(struct params p, int which) {
+  double (*level[])(void *, const double *) = {NULL, left, deep};
+  if (!level[which]) return p;
+  p.level_min = LEVEL - 1;
+  p.criterion[p.ncriteria++] = (struct criterion){
+      .type = CRITERION_FUNCTION, .level = LEVEL, .function = {level[which]}};
+  return p;
+}
+
+/* The keys of a case have the names, ranges and defaults of the closures. */
+START_TEST(keys_are_those_of_the_closures) {
+  for (int k = 0; k < TWO_FLUID_NKEYS; k++) {
+    const struct two_fluid_key *number = &two_fluid_keys[k];
+    const size_t offset = offsetof(struct two_fluid_keys, closure.param) +
+                          (size_t)k * sizeof(double);
+    const struct key *found = NULL;
+    char path[64];
+    snprintf(path, sizeof path, "%s.%s", number->section, number->key.name);
+    for (int i = 0; i < two_fluid_model_keys.nkeys; i++)
+      if (strcmp(two_fluid_model_keys.keys[i].path, path) == 0)
+        found = &two_fluid_model_keys.keys[i];
+    if (k == TWO_FLUID_GRAINS_DENSITY) continue; /* the key of all models */
+    ck_assert_msg(found != NULL, "%s", path);
+    ck_assert_uint_eq(found->offset, offset);
+    ck_assert_double_eq(found->low, number->key.min);
+    ck_assert_double_eq(found->high, number->key.max);
+    if (strcmp(number->section, "fluid") == 0) continue;
+    ck_assert_double_eq(strtod(found->fallback, NULL), number->key.initial);
+  }
+}
+END_TEST
+
+/* A settled bed stays: the flux is that of the last consolidation, from the
+ * continuous balance to that of the leaves. Water, and air, where drag is slow;
+ * surfaces on faces and between; levels that jump across it and along it. */
+START_TEST(a_settled_bed_rests) {
+  static const double top[] = {0.1, 0.1017};
+  double z[] = {-1, top[_i % 2]};
+  struct two_fluid_keys keys =
+      grains_keys(TWO_FLUID_KTGF, _i / 2 % 2 ? TWO_FLUID_AIR : TWO_FLUID_WATER);
+  struct params p =
+      with_levels(grains_params(&keys, 0.16, LEVEL), DIM == 2 ? _i / 4 : 0);
+  p.shape = (struct function){bed, z};
+  struct two_fluid *sim = grains_new(&p);
+  struct two_fluid_measures before, after;
+  two_fluid_measure(sim, &before);
+  const bool done = grains_run(sim, 1, 300);
+  two_fluid_measure(sim, &after);
+  const double flux = grains_flux(sim);
+  outline_free(&before.outline), outline_free(&after.outline);
+  two_fluid_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(flux, _i / 4 == 1 && DIM == 2 ? 1e-4 : 2e-5);
+  ck_assert_double_eq_tol(after.volume / before.volume, 1, 1e-13);
+}
+END_TEST
+
+/* Likewise of critical_state, which a plastic packing holds: settled on one,
+ * and with one that makes 0.6 carry the weight. Neither moves it. */
+START_TEST(a_plastic_bed_rests) {
+  double z[] = {-1, 0.1};
+  struct two_fluid_keys keys =
+      grains_keys(TWO_FLUID_CRITICAL_STATE, TWO_FLUID_WATER);
+  keys.start = _i ? TWO_FLUID_DENSE : TWO_FLUID_SETTLED;
+  struct params p = grains_params(&keys, 0.16, LEVEL);
+  p.shape = (struct function){bed, z};
+  struct two_fluid *sim = grains_new(&p);
+  const bool done = grains_run(sim, 1, 300);
+  const double flux = grains_flux(sim);
+  two_fluid_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(flux, 1e-4);
+}
+END_TEST
+
+/* A bed falls freely through air, by (1 - rho_f/rho_s) g t while drag is small,
+ * lands on the floor, and never passes its densest packing. */
+START_TEST(a_bed_falls_and_lands) {
+  double z[] = {0.04, 0.1};
+  struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_AIR);
+  keys.start = TWO_FLUID_PATCHED, keys.alpha_start = 0.5;
+  struct params p = grains_params(&keys, 0.16, LEVEL);
+  p.shape = (struct function){bed, z};
+  struct two_fluid *sim = grains_new(&p);
+  struct two_fluid_measures before, m;
+  two_fluid_measure(sim, &before);
+  bool done = true;
+  double most = 0, gain = 0;
+  for (int k = 0; k < 200 && done; k++) {
+    done = grains_run(sim, 1, 1);
+    two_fluid_measure(sim, &m);
+    outline_free(&m.outline);
+    most = fmax(most, m.max_alpha);
+    gain = fmax(gain, m.kinetic + m.fluid_kinetic + m.potential - sim->initial);
+  }
+  const double energy = sim->initial;
+  outline_free(&before.outline);
+  two_fluid_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_eq_tol(m.volume / before.volume, 1, 1e-12);
+  ck_assert_double_lt(most, 0.63);
+  ck_assert_double_le(gain, 1e-3 * energy);
+  ck_assert_double_le(m.grain_speed, 0.02);
+}
+END_TEST
+
+/* Both phases keep a uniform velocity, on one level and across levels. */
+START_TEST(uniform_motion_stays) {
+  struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_WATER);
+  keys.start = TWO_FLUID_PATCHED, keys.alpha_start = 0.3;
+  struct params p = with_levels(grains_params(&keys, 0.16, LEVEL), _i);
+  p.gravity[DIM - 1] = 0;
+  p.tolerance_pressure = p.tolerance_viscous = 1e-10;
+  for (int side = 0; side < 2 * DIM; side++)
+    p.boundary[side].type = BOUNDARY_PERIODIC;
+  struct two_fluid *sim = grains_new(&p);
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++)
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      for (int d = 0; d < DIM; d++) sim->u[k][d]->v[i] = 0.1 * (d + 1);
+  const bool done = grains_run(sim, 0.05, 5);
+  double worst = 0;
+  mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int k = 0; k < TWO_FLUID_NPHASES; k++)
+      for (int d = 0; d < DIM; d++)
+        worst = fmax(worst, fabs(sim->u[k][d]->v[i] - 0.1 * (d + 1)));
+    worst = fmax(worst, fabs(sim->alpha->v[i] - 0.3));
+  }
+  worst = mesh_max(mesh, worst);
+  two_fluid_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(worst, 1e-8);
+}
+END_TEST
+
+Suite *two_fluid_suite(void) {
+  Suite *suite = suite_create("two_fluid");
+  TCase *keys = tcase_create("keys"), *rest = tcase_create("rest");
+  TCase *flow = tcase_create("flow");
+  tcase_add_test(keys, keys_are_those_of_the_closures);
+  tcase_add_loop_test(rest, a_settled_bed_rests, 0, DIM == 2 ? 12 : 4);
+  if (DIM == 2) tcase_add_loop_test(rest, a_plastic_bed_rests, 0, 2);
+  tcase_add_test(flow, a_bed_falls_and_lands);
+  tcase_add_loop_test(flow, uniform_motion_stays, 0, DIM == 2 ? 2 : 1);
+  suite_add_tcase(suite, keys);
+  suite_add_tcase(suite, rest);
+  suite_add_tcase(suite, flow);
+  return suite;
+}
