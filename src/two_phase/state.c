@@ -134,9 +134,6 @@ static void add_yield(struct two_phase *sim) {
   static const char *const trend[] = {"strain_trend_0", "strain_trend_1",
                                       "strain_trend_2", "strain_trend_3",
                                       "strain_trend_4"};
-  static const char *const change[] = {"acceleration_change_x",
-                                       "acceleration_change_y",
-                                       "acceleration_change_z"};
   struct yield *yield = &sim->yield;
   yield->nrows = strain_rows(sim->grid.mesh);
   for (int k = 0; k < yield->nrows; k++) {
@@ -146,11 +143,6 @@ static void add_yield(struct two_phase *sim) {
         add_kept_face(sim, strain[k], "1/s", "rate of strain", &remap_faces);
     yield->trend[k] =
         add_kept_face(sim, trend[k], "1/s^2", "its change", &remap_faces);
-  }
-  for (int d = 0; d < DIM; d++) {
-    yield->g_change[d] =
-        add_cell(sim, change[d], "m/s^2",
-                 "change of the acceleration in a step", &remap_average, false);
   }
   yield->tau_y = add_kept_face(sim, "yield_stress", "Pa",
                                "bound of the yield stress", &remap_faces);

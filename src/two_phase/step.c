@@ -21,7 +21,7 @@
  *     gravity_f = grad of the weight, less that of the surface, over rho_f
  * update_acceleration  where there are grains
  *     g = A(gravity_f - alpha_f grad p)
- * still_find, still_guess    with "exact", where grains rest (still.h)
+ * still_find           with "exact", which grains hardly move (still.h)
  * update_viscosity
  *     eta_f = both phases in series, eta_1 of the shear rate of u^n and of p
  * advect_momentum      away from the band
@@ -37,7 +37,8 @@
  *     v = (u* - u)/dt - g + drag/rho u*
  *     u* <- u* - dt g
  * project
- *     u_f = mean of u* on both sides, by mass, + dt gravity_f
+ *     u_f = mean of u* on both sides, by mass, + dt gravity_f, with "exact"
+ *           not where grains hardly move (still.h)
  *     div(alpha_f grad p) = div u_f/dt
  *     u_f^{n+1} = u_f - dt alpha_f grad p
  *     g = A(gravity_f - alpha_f grad p)
@@ -96,6 +97,11 @@
 /* Density of a gas that weighs nothing, in that of the grains. */
 #define WEIGHTLESS 1e-12
 
+/* The velocity that carries c is solved for to this part of the tolerance of
+ * pressure: its errors move grains at rest. */
+#define CARRIED 0.01
+#define LEAST_TOLERANCE 1e-12
+
 /* A divergence below this part of the rate of flow is round-off. */
 #define SOLENOIDAL 1e-12
 
@@ -103,7 +109,7 @@
  * below FIT. A heap that has lost 10 % of its stress has 0.035 and would move
  * by 1.4e-5 sqrt(g L). */
 #define UNFIT 0.02
-#define FIT 0.005
+#define FIT 0.0005
 
 /* A failed step is repeated at most RETRIES times, each time with dt reduced by
  * RETRY_FACTOR; a step too long for the flow it finds, SHORTENINGS times. */
@@ -267,7 +273,7 @@ static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
 /* Take scratch for the acceleration g that the predictor of Crank-Nicolson
  * needs to be of second order in time, and fill it: pressure and gravity, with
  * what viscosity and walls did in the last step; in backward Euler that only to
- * grains at rest (still.h). advect_momentum gives it back. */
+ * grains that hardly move (still.h). advect_momentum gives it back. */
 static void predictor_acceleration(struct two_phase *sim, double *g[DIM]) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[DIM];
@@ -278,10 +284,9 @@ static void predictor_acceleration(struct two_phase *sim, double *g[DIM]) {
     bc[e] = neumann;
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
       const double u = sim->u_old[e]->v[i];
-      g[e][i] = sim->g[e]->v[i];
-      if (still && still[i] == 0) continue;
-      g[e][i] += sim->viscous_g[e]->v[i];
-      if (drag) g[e][i] -= drag[i] * u / sim->rho->v[i];
+      double lost = sim->viscous_g[e]->v[i];
+      if (drag) lost -= drag[i] * u / sim->rho->v[i];
+      g[e][i] = sim->g[e]->v[i] + (still ? still[i] : 1) * lost;
     }
   }
   mesh_fill(sim->grid.mesh, DIM, g, bc, false);
@@ -556,30 +561,44 @@ static const double *turn_face_velocity(struct two_phase *sim, int k) {
   return NULL;
 }
 
-/* Make u_f the solenoidal part of the mean of u^{n+1} on both sides of a face,
- * which vanishes where grains rest (yield.h). Both the mean and the projection
- * are by mass with a gas that weighs nothing, so that its currents are felt by
- * itself alone. */
-static void carry_with_grains(struct two_phase *sim, double dt) {
+static double carrying_tolerance(const struct params *params) {
+  const double tolerance = params->tolerance_pressure;
+  return min2(tolerance, max2(CARRIED * tolerance, LEAST_TOLERANCE));
+}
+
+/* Make of a projection one with a gas that weighs nothing, so that its currents
+ * are felt by itself alone, in scratch that end_light gives back. */
+static struct projection begin_light(struct two_phase *sim,
+                                     const struct projection *projection) {
+  static const struct bc neumann[MESH_MAX_PATCHES];
   const struct mesh *mesh = sim->grid.mesh;
   const double density[2] = {1, WEIGHTLESS};
-  struct projection projection = begin_projection(sim);
-  double *rho = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
-  double *alpha_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
-  double *u[DIM];
-  static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[] = {neumann};
-  field_arrays(sim->u, u);
-  field_fill_many(mesh, DIM, sim->u);
+  struct projection light = *projection;
+  double *rho = scratch_take_one(&sim->scratch, FIELD_CELL, "light");
+  double *alpha_f = scratch_take_one(&sim->scratch, FIELD_FACE, "light");
   field_fill(mesh, sim->c);
   properties_density(mesh, density, sim->c->v, sim->grid.closed, rho, alpha_f);
   mesh_fill(mesh, 1, &rho, bc, false);
-  projection.rho = rho;
-  projection.alpha_f = alpha_f;
-  projection_face_velocity(&projection, 0, u, sim->u_f->v);
-  sim->carrying = make_solenoidal_by(sim, &projection, dt, sim->u_f->v);
-  scratch_give(&sim->scratch, __func__);
-  end_projection(sim);
+  light.rho = rho;
+  light.alpha_f = alpha_f;
+  light.tolerance = carrying_tolerance(sim->params);
+  return light;
+}
+
+static void end_light(struct two_phase *sim) {
+  scratch_give(&sim->scratch, "light");
+}
+
+/* Make u_f the solenoidal part of the mean of u^{n+1} on both sides of a face,
+ * which vanishes where grains rest (yield.h). */
+static void carry_with_grains(struct two_phase *sim,
+                              const struct projection *light, double dt) {
+  double *u[DIM];
+  field_arrays(sim->u, u);
+  field_fill_many(sim->grid.mesh, DIM, sim->u);
+  projection_face_velocity(light, 0, u, sim->u_f->v);
+  sim->carrying = make_solenoidal_by(sim, light, dt, sim->u_f->v);
 }
 
 static void add_acceleration(struct two_phase *sim, double dt) {
@@ -591,26 +610,47 @@ static void add_acceleration(struct two_phase *sim, double dt) {
   }
 }
 
+/* Find p, and from it u_f and g. */
+static void find_pressure(struct two_phase *sim, struct projection *projection,
+                          double dt) {
+  double *g[DIM];
+  field_arrays(sim->g, g);
+  sim->pressure = projection_project(projection, dt, sim->u_f->v, sim->p->v);
+  pressure_level_set(sim);
+  set_acceleration(sim, projection, g);
+}
+
+/* With an exact yield, find p, u and u_f, which is the mean of u* - dt g, + dt
+ * gravity. */
+static void project_exactly(struct two_phase *sim,
+                            struct projection *projection, double dt) {
+  const struct projection light = begin_light(sim, projection);
+  double *last_g[DIM];
+  fill_pressure(sim);
+  still_face_velocity(sim, projection, light.rho, dt, sim->u_f->v);
+  still_remember(sim, last_g);
+  find_pressure(sim, projection, dt);
+  add_acceleration(sim, dt);
+  still_keep(sim, dt, last_g);
+  carry_with_grains(sim, &light, dt);
+  end_light(sim);
+}
+
 /* Find p, u_f and u at the end of the step; k counts repetitions. */
 static void project(struct two_phase *sim, double dt, int k) {
-  const struct mesh *mesh = sim->grid.mesh;
   const double *last = turn_face_velocity(sim, k);
   struct projection projection = begin_projection(sim);
-  double *u[DIM], *g[DIM];
-  field_arrays(sim->u, u), field_arrays(sim->g, g);
-  field_fill_many(mesh, DIM, sim->u);
+  double *u[DIM];
+  field_arrays(sim->u, u);
+  field_fill_many(sim->grid.mesh, DIM, sim->u);
   projection_face_velocity(&projection, dt, u, sim->u_f->v);
-  sim->pressure = projection_project(&projection, dt, sim->u_f->v, sim->p->v);
-  pressure_level_set(sim);
-  if (sim->exact) still_before(sim, dt);
-  set_acceleration(sim, &projection, g);
-  end_projection(sim);
   if (sim->exact) {
-    still_after(sim, dt);
-    carry_with_grains(sim, dt);
+    project_exactly(sim, &projection, dt);
   } else {
+    find_pressure(sim, &projection, dt);
     add_acceleration(sim, dt);
   }
+  end_projection(sim);
   measure_repetition(sim, k, last);
 }
 
@@ -665,9 +705,11 @@ static bool has_failed(const struct two_phase *sim) {
   if (failed) {
     log_info("step %lld: %s is not finite", (long long)sim->model.step, wild);
   }
+  const double tolerances[] = {
+      params->tolerance_pressure, params->tolerance_pressure,
+      carrying_tolerance(params), params->tolerance_viscous * sim->scale};
   for (int k = 0; k < 4; k++) {
-    const double tolerance = k < 3 ? params->tolerance_pressure
-                                   : params->tolerance_viscous * sim->scale;
+    const double tolerance = tolerances[k];
     if (is_solved(solve[k], tolerance)) continue;
     if (solve[k]->status == SOLVE_INCOMPATIBLE) {
       log_info("step %lld: %s solve: what flows in does not flow out",
@@ -695,7 +737,7 @@ static void advance_state(struct two_phase *sim, double dt, double rate) {
   percolation_advance(sim, dt_c), lap(sim, STAGE_FRACTION);
   update_density(sim);
   update_acceleration(sim);
-  if (sim->exact) still_find(sim, dt), still_guess(sim);
+  if (sim->exact) still_find(sim, dt);
   lap(sim, STAGE_DENSITY);
   update_viscosity(sim, sim->u_old), lap(sim, STAGE_RHEOLOGY);
   advect_momentum(sim, dt), lap(sim, STAGE_ADVECTION);
@@ -807,7 +849,6 @@ void step_acceleration(struct two_phase *sim, double *const g[DIM]) {
 
 void step_start(struct two_phase *sim) {
   sim->planes_hold = false;
-  if (sim->exact) still_forget(sim);
   update_density(sim);
   const double divergence = clean_divergence(sim->grid.mesh, sim->u_f->v);
   if (divergence > SOLENOIDAL * time_step_rate(sim)) {

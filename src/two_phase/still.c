@@ -4,16 +4,74 @@
 #include <math.h>
 #include <string.h>
 
+#include "talus/minmax.h"
+#include "talus/poisson.h"
+#include "talus/projection.h"
 #include "talus/two_phase/state.h"
 #include "talus/two_phase/yield.h"
 
 /* Still grains are slower than this part of what gravity gives in a step. */
 #define SLOW 0.1
-/* Part of the last change of g that is expected again. */
-#define EXPECTED 0.9
+/* Leaves with more grains than this are asked for their speed. */
+#define HOLDS_GRAINS 0.01
 
-/* Set wet and held [nfaces_all] to 1 on faces that can yield, and on those of
- * them that do not, else to 0. */
+void still_find(struct two_phase *sim, double dt) {
+  double *w = sim->yield.still->v;
+  const struct mesh *mesh = sim->grid.mesh;
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++) {
+    g2 += sim->params->gravity[d] * sim->params->gravity[d];
+  }
+  const double slow = max2(SLOW * dt * sqrt(g2), 1e-300);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double u2 = 0;
+    w[i] = 0;
+    if (!(sim->c->v[i] > HOLDS_GRAINS)) continue;
+    for (int e = 0; e < DIM; e++) {
+      u2 += sim->u_old[e]->v[i] * sim->u_old[e]->v[i];
+    }
+    w[i] = max2(0, 1 - sqrt(u2) / slow);
+  }
+  mesh_fill_ghosts(mesh, 1, &w);
+}
+
+/* Return w of a face: the least of the leaves that hold grains, 0 without. */
+static double face_weight(const struct two_phase *sim, int32_t f) {
+  double least = 1;
+  bool grains = false;
+  for (int side = 0; side < 2; side++) {
+    const int32_t leaf = sim->grid.mesh->face_leaf[f][side];
+    if (leaf < 0) return 0;
+    if (!(sim->c->v[leaf] > HOLDS_GRAINS)) continue;
+    least = min2(least, sim->yield.still->v[leaf]);
+    grains = true;
+  }
+  return grains ? least : 0;
+}
+
+/* Set mean [nfaces_all] to m_c of u*. */
+static void find_mean(struct two_phase *sim,
+                      const struct projection *projection, const double *rho,
+                      double dt, double *mean) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct bc *bc[DIM];
+  double *u[DIM];
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, u);
+  for (int e = 0; e < DIM; e++) {
+    bc[e] = sim->u[e]->bc;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      u[e][i] = sim->u[e]->v[i] + dt * sim->g[e]->v[i];
+    }
+  }
+  mesh_fill(mesh, DIM, u, bc, false);
+  struct projection by_grains = *projection;
+  by_grains.rho = rho;
+  projection_face_velocity(&by_grains, 0, u, mean);
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Set held [nfaces_all] to 1 on faces that can yield and do not, wet to 1 on
+ * all that can, else to 0. */
 static void find_held(const struct two_phase *sim, double *wet, double *held) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct yield *yield = &sim->yield;
@@ -27,59 +85,44 @@ static void find_held(const struct two_phase *sim, double *wet, double *held) {
   mesh_fill_faces(mesh, 2, face);
 }
 
-void still_find(struct two_phase *sim, double dt) {
+void still_remember(struct two_phase *sim, double *g[DIM]) {
+  const size_t bytes = (size_t)sim->grid.mesh->nleaves * sizeof(double);
+  scratch_take(&sim->scratch, FIELD_CELL, "remembered", DIM, g);
+  for (int e = 0; e < DIM; e++) memcpy(g[e], sim->g[e]->v, bytes);
+}
+
+void still_keep(struct two_phase *sim, double dt, double *const g[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *face[2], g2 = 0;
+  double *face[2];
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   find_held(sim, face[0], face[1]);
-  for (int d = 0; d < DIM; d++) {
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  }
-  const double slow2 = SLOW * SLOW * dt * dt * g2;
+  /* a single phase has not renewed g for the load of this step */
+  const bool renewed = !sim->params->single_phase;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double wet = mesh_mean(mesh, face[0], i);
     const double held = mesh_mean(mesh, face[1], i);
-    double u2 = 0;
-    for (int e = 0; e < DIM; e++) u2 += sim->u[e]->v[i] * sim->u[e]->v[i];
-    sim->yield.still->v[i] = wet > 0 && held == wet && u2 < slow2;
+    if (!renewed || wet == 0 || held != wet) continue;
+    for (int e = 0; e < DIM; e++) {
+      sim->u[e]->v[i] +=
+          sim->yield.still->v[i] * dt * (g[e][i] - sim->g[e]->v[i]);
+    }
   }
+  for (int e = 0; e < DIM; e++) mesh_touch(mesh, sim->u[e]->v);
+  scratch_give(&sim->scratch, __func__);
+  scratch_give(&sim->scratch, "remembered");
+}
+
+void still_face_velocity(struct two_phase *sim,
+                         const struct projection *projection, const double *rho,
+                         double dt, double *u_f) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *mean = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  find_mean(sim, projection, rho, dt, mean);
+  poisson_flux(mesh, projection->alpha_f, sim->p->v, projection->flux);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const double slowly = mean[f] + dt * projection->flux[f];
+    u_f[f] += face_weight(sim, f) * (slowly - u_f[f]);
+  }
+  mesh_fill_faces(mesh, 1, &u_f);
   scratch_give(&sim->scratch, __func__);
 }
-
-void still_forget(struct two_phase *sim) {
-  for (int e = 0; e < DIM; e++) {
-    double *change = sim->yield.g_change[e]->v;
-    memset(change, 0, (size_t)sim->grid.mesh->nleaves * sizeof *change);
-  }
-}
-
-void still_guess(struct two_phase *sim) {
-  for (int e = 0; e < DIM; e++) {
-    double *g = sim->g[e]->v, *change = sim->yield.g_change[e]->v;
-    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-      change[i] *= EXPECTED * sim->yield.still->v[i];
-      g[i] += change[i];
-    }
-    mesh_touch(sim->grid.mesh, g);
-  }
-}
-
-/* Take g from, or add it to, its change, and dt g to u of leaves that are still
- * or not. */
-static void count(struct two_phase *sim, double dt, double sign, bool still) {
-  for (int e = 0; e < DIM; e++) {
-    const double *g = sim->g[e]->v;
-    double *u = sim->u[e]->v, *change = sim->yield.g_change[e]->v;
-    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-      change[i] += sign * g[i];
-      if ((sim->yield.still->v[i] > 0) == still) u[i] += dt * g[i];
-    }
-    mesh_touch(sim->grid.mesh, u);
-  }
-}
-
-void still_before(struct two_phase *sim, double dt) {
-  count(sim, dt, -1, true);
-}
-
-void still_after(struct two_phase *sim, double dt) { count(sim, dt, 1, false); }

@@ -1,36 +1,50 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Grains at rest under an exact yield (yield.h), and what the approximate
- * projection would make them feel.
+/* Grains that hardly move under an exact yield (yield.h), and what the
+ * approximate projection would make them feel.
  *
- * The viscous solve holds a plug at u* = 0; what the projection then adds is
- * dt (g^{n+1} - g^n), as p of a plug, which only the difference between its
- * wide and narrow gradients fixes, has not settled. It settles like diffusion
- * by h^2/4 a step, over N cells in N^2 steps, and shakes the plug meanwhile. So
- * leaves that are held, no wet side of them being at its yield stress, and
- * slower than a tenth of what gravity gives in a step,
- *   |u^n| < 0.1 dt |gravity|,
- * are still, and there
- *   the viscous solve takes g^n + b e^n, e^n = g^n - g^{n-1} + b e^{n-1}, b =
- *     0.9, the heavy ball of Polyak, so that p settles in about N steps;
- *   u^{n+1} = u* is kept;
- *   the predictor of advection knows what viscosity does, as they do not fall.
- * Grains that move are not still, whatever holds them together.
+ * It gives faces u_f = m(u* - dt g^n) + dt (a^n + alpha_f grad p^n) before
+ * pressure, m the mean by mass, a = gravity_f - alpha_f grad p and g its mean
+ * in a leaf, A(a). In a flow that goes on, it asks of u that div m(u) = -dt
+ * div(a - m(g)), which is small where p is smooth, but does not vanish. Grains
+ * that are held bear that: s makes up for p until it does. Grains at their
+ * yield stress have no choice, and sink at a speed in proportion to dt.
+ * Besides, m lets the gas blow into grains at rest with rho_gas/rho_grains of
+ * its speed.
+ *
+ * Therefore the faces of slow grains are told of the change of p alone,
+ *   u_f = (1 - w) [m(u* - dt g^n) + dt (a^n + alpha_f grad p^n)]
+ *             + w [m_c(u*) + dt alpha_f grad p^n],
+ * m_c the mean by mass with a gas that weighs nothing, and of leaves with
+ * grains beside the face w is the least
+ *   w = max(0, 1 - |u^n|/(0.1 dt |gravity|)).
+ * Grains that fall freely pass that speed in a tenth of a step. Of grains that
+ * move it would leave odd and even pressures apart, which u does not feel.
+ *
+ * Held grains, no wet side of which is at its yield stress, keep the velocity
+ * that their springs leave them,
+ *   u^{n+1} = u* + (1 - w) dt (g^{n+1} - g^n),
+ * under a gas only, as a single phase meets a new load in the new g first, and
+ * the predictor of advection knows w times what viscosity did in the last step,
+ * as grains at rest do not fall.
  */
 #ifndef TALUS_TWO_PHASE_STILL_H
 #define TALUS_TWO_PHASE_STILL_H
 
+struct projection;
 struct two_phase;
 
-/* Find which leaves are still, for a step of dt. Collective. */
+/* Set w of leaves and ghosts for a step of dt; 0 in gas. Collective. */
 void still_find(struct two_phase *sim, double dt);
-/* Forget the change of g. */
-void still_forget(struct two_phase *sim);
-/* Add to g, which is that of p^n, what is guessed of its change. */
-void still_guess(struct two_phase *sim);
-/* Count the change of g, over dt, from that of the solve to that of the
- * projection: before and after it is set. u [nleaves] lacks dt g in `before`
- * and has it from `after`. */
-void still_before(struct two_phase *sim, double dt);
-void still_after(struct two_phase *sim, double dt);
+/* Change u_f [nfaces_all], the mean of u* - dt g, + dt gravity_f, at faces of
+ * slow grains. rho [ncells]: density of m_c, filled, as p is.
+ * Collective. */
+void still_face_velocity(struct two_phase *sim,
+                         const struct projection *projection, const double *rho,
+                         double dt, double *u_f);
+/* Take scratch for g [nleaves] of the viscous solve, and copy it there. */
+void still_remember(struct two_phase *sim, double *g[DIM]);
+/* Take from u^{n+1} of leaves that are held w times what the new g has added to
+ * u*; g: of still_remember, gives its scratch back. Collective. */
+void still_keep(struct two_phase *sim, double dt, double *const g[DIM]);
 
 #endif

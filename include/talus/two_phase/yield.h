@@ -14,7 +14,7 @@
  * this would exert at the same D differs from that of the solve,
  *   T = P(s^{n+1} + 2 r D) - m (s^n + 2 r D),
  *   mismatch = (sum |T| / sum tau_y) (sum |T|/(2 r) / sum |D|) > 0.02,
- * sums over wet faces by volume, and then until it is below 0.005: where loads
+ * sums over wet faces by volume, and then until it is below 0.0005: where loads
  * come or change at once. In a flow the second factor is small, as springs
  * hardly move there, and at rest the first. D is that of u before the
  * projection, as the solve leaves it. Where it has left out a jolt, that of u^n
@@ -61,11 +61,10 @@ struct yield {
   struct field *strain[STRAIN_ROWS], *trend[STRAIN_ROWS]; /* D, 1/s, and its
                                   change, 1/s^2; kept */
   struct field *tau_y;                                    /* Pa; kept */
-  struct field *g_change[DIM]; /* of g from step to step, m/s^2; kept */
-  struct field *still;         /* 1 in leaves at rest, else 0 (still.h) */
-  struct field *shear;         /* sqrt(2 D:D) of u^n on faces, 1/s */
-  struct field *state;         /* yield_state of snapshots, on demand */
-  double gamma_r;              /* 1/s */
+  struct field *still; /* 1 in leaves at rest, 0 in those that move (still.h) */
+  struct field *shear; /* sqrt(2 D:D) of u^n on faces, 1/s */
+  struct field *state; /* yield_state of snapshots, on demand */
+  double gamma_r;      /* 1/s */
 };
 
 /* Set eta_f, tau_y and gamma_r from the velocity, which is filled, and p. */
