@@ -28,30 +28,32 @@ static inline struct forest *grid_make(enum grid_kind grid, bool periodic,
 }
 
 /* constant + slope.x + sum_d curve_d x_d^2 / 2
- * + sum over modes of a prod_d sin(k_d pi x_d + phase_d), in the plane. */
+ * + sum over modes of a prod_d sin(k_d pi x_d + phase_d). */
 struct mode {
-  double a, k[2], phase[2];
+  double a, k[3], phase[3];
 };
 struct smooth {
-  double constant, slope[2], curve[2];
+  double constant, slope[3], curve[3];
   int n;
   struct mode mode[3];
 };
 
-/* Return the derivative of the smooth function, of order[d] along axis d; both
- * orders at most 2. */
+/* Return the derivative of the smooth function, of order[d] along axis d; all
+ * orders together at most 2. */
 static inline double smooth_at(const struct smooth *s, const double *x,
-                               const int order[2]) {
+                               const int order[DIM]) {
   static const double pi = 3.14159265358979323846;
-  double sum = order[0] + order[1] == 0 ? s->constant : 0;
-  for (int d = 0; d < 2; d++) {
+  int total = 0;
+  for (int d = 0; d < DIM; d++) total += order[d];
+  double sum = total == 0 ? s->constant : 0;
+  for (int d = 0; d < DIM; d++) {
     const double term[] = {s->slope[d] * x[d] + 0.5 * s->curve[d] * x[d] * x[d],
                            s->slope[d] + s->curve[d] * x[d], s->curve[d]};
-    if (order[1 - d] == 0) sum += term[order[d]];
+    if (order[d] == total) sum += term[order[d]];
   }
   for (int m = 0; m < s->n; m++) {
     double product = s->mode[m].a;
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < DIM; d++) {
       const double k = pi * s->mode[m].k[d];
       product *= pow(k, order[d]) *
                  sin(k * x[d] + s->mode[m].phase[d] + 0.5 * pi * order[d]);
@@ -62,16 +64,19 @@ static inline double smooth_at(const struct smooth *s, const double *x,
 }
 
 static inline double smooth_value(const struct smooth *s, const double *x) {
-  return smooth_at(s, x, (const int[]){0, 0});
+  return smooth_at(s, x, (const int[DIM]){0});
 }
 static inline double smooth_slope(const struct smooth *s, const double *x,
                                   int d) {
-  return smooth_at(s, x, (const int[]){d == 0, d == 1});
+  int order[DIM] = {0};
+  order[d] = 1;
+  return smooth_at(s, x, order);
 }
 static inline double smooth_second(const struct smooth *s, const double *x,
                                    int d, int e) {
-  return smooth_at(s, x,
-                   (const int[]){(d == 0) + (e == 0), (d == 1) + (e == 1)});
+  int order[DIM] = {0};
+  order[d]++, order[e]++;
+  return smooth_at(s, x, order);
 }
 
 /* Set v [nfaces_all], the caller's, to a function of the face centre, 0 on
@@ -115,13 +120,13 @@ static inline double largest_size(const struct mesh *mesh, const double *v) {
 typedef struct norms grid_solver(const void *problem, enum grid_kind grid,
                                  int level);
 
-/* Report errors on levels 4 to 8 of every grid; orders that L2 and max must
- * reach. */
+/* Report errors on levels 4 to 8 of every grid, in 3D on 3 to 6; orders that L2
+ * and max must reach. */
 static inline void report_grids(struct report *report, const char *name,
                                 const char *field, grid_solver *solve,
                                 const void *problem, double order_l2,
                                 double order_most) {
-  enum { FIRST = 4, N = 5, LENGTH = 64 };
+  enum { FIRST = DIM == 2 ? 4 : 3, N = DIM == 2 ? 5 : 4, LENGTH = 64 };
   char row[LENGTH], of_l2[LENGTH], of_most[LENGTH];
   snprintf(of_l2, LENGTH, "L2 of %s", field);
   snprintf(of_most, LENGTH, "max of %s", field);
