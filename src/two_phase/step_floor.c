@@ -75,14 +75,13 @@ static void find_worst(const struct two_phase *sim, struct worst *flow,
   *flow = *forces = (struct worst){.rate = 0};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double fastest = 0, g2 = 0;
+    const double start = time_step_of_start(sim, i);
     for (int f = 0; f < NFACE; f++) {
       fastest = max2(fastest, fabs(u_f[mesh->cell_face[i][f]]));
     }
     for (int d = 0; d < DIM; d++) g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
     take_worst(mesh, i, mesh_turnover(mesh, u_f, i), fastest, flow);
-    if (sim->c->v[i] > 0.5)
-      take_worst(mesh, i, sqrt(mesh_edges(mesh, i, sqrt(g2))), sqrt(g2),
-                 forces);
+    if (start < HUGE_VAL) take_worst(mesh, i, 1 / start, sqrt(g2), forces);
   }
   share_worst(mesh, flow);
   share_worst(mesh, forces);
@@ -101,9 +100,8 @@ static void place_text(const struct worst *worst, size_t size, char *text) {
  * the step, which has bounds of its own. */
 static void cause_text(const struct two_phase *sim, const struct worst *flow,
                        const struct worst *forces, size_t size, char *text) {
-  /* 0.1: the part of sqrt(h/g) that time_step.h allows */
   const double by_flow = log(flow->rate * sim->model.dt / sim->params->cfl);
-  const double by_forces = log(forces->rate * sim->model.dt / 0.1);
+  const double by_forces = log(forces->rate * sim->model.dt);
   char place[160];
   place_text(forces, sizeof place, place);
   if (by_flow < -2 && by_forces < -2)

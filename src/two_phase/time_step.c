@@ -8,8 +8,10 @@
 
 /* From one step to the next dt grows by at most this factor. */
 #define DT_GROWTH 1.2
-/* dt is at most this times sqrt(h/|g|) of grains that set off. */
+/* dt is at most this times sqrt(h/|g|) of grains at rest that set off. */
 #define DT_ACCELERATION 0.1
+/* Or their speed grows by at most this part of it. */
+#define DT_UNDER_WAY 0.5
 /* After a step that was too long the next is at least this part of the bound.
  */
 #define DT_SHRINK 0.2
@@ -54,25 +56,25 @@ static double cfl_bound(const struct two_phase *sim, double rate) {
   return rate > 0 ? sim->params->cfl / rate : HUGE_VAL;
 }
 
-/* Return DT_ACCELERATION times the least dt in which grains that set off cross
- * a cell. Such grains are slower than their acceleration would make them over a
- * cell, |u| < sqrt(|g| h); their viscosity, from the last strain rate, lags
- * behind. */
+double time_step_of_start(const struct two_phase *sim, int32_t i) {
+  double g2 = 0, u2 = 0;
+  if (!(sim->c->v[i] > 0.5)) return HUGE_VAL;
+  for (int d = 0; d < DIM; d++) {
+    g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
+    u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
+  }
+  const double g = sqrt(g2), fall2 = g * sim->grid.mesh->h[i];
+  if (!(u2 < fall2)) return HUGE_VAL;
+  return max2(DT_ACCELERATION * sqrt(fall2), DT_UNDER_WAY * sqrt(u2)) / g;
+}
+
 static double acceleration_bound(const struct two_phase *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  double most = 0;
+  double least = HUGE_VAL;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double g2 = 0, u2 = 0;
-    if (!(sim->c->v[i] > 0.5)) continue;
-    for (int d = 0; d < DIM; d++) {
-      g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
-      u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
-    }
-    const double g = sqrt(g2);
-    if (u2 < g * mesh->h[i]) most = max2(most, mesh_edges(mesh, i, g));
+    least = min2(least, time_step_of_start(sim, i));
   }
-  most = mesh_max(mesh, most);
-  return most > 0 ? DT_ACCELERATION / sqrt(most) : HUGE_VAL;
+  return -mesh_max(mesh, -least);
 }
 
 /* Bound dt by sqrt(h/|g|) of the finest leaves, where there is a surface. */

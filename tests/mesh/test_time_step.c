@@ -203,6 +203,29 @@ START_TEST(a_tilt_is_a_sudden_start) {
 }
 END_TEST
 
+/* From rest a tenth of what a fall across the leaf takes, then until the speed
+ * has grown by half; grains that are faster, and gas, are let be. */
+START_TEST(grains_that_set_off_may_gain_half_their_speed) {
+  struct params params;
+  struct two_phase *sim = bed_at_rest(&params);
+  const double h = sim->grid.mesh->h[0], g = 3, speed = sqrt(g * h);
+  const double part[] = {0, 0.05, 0.5, 1.01}, want[] = {0.1, 0.1, 0.25, 1e9};
+  double dt[4], gas;
+  for (int d = 0; d < DIM; d++) sim->u[d]->v[0] = sim->g[d]->v[0] = 0;
+  sim->c->v[0] = 1;
+  sim->g[0]->v[0] = -g;
+  for (int k = 0; k < 4; k++) {
+    sim->u[1]->v[0] = part[k] * speed;
+    dt[k] = fmin(time_step_of_start(sim, 0) / sqrt(h / g), 1e9);
+  }
+  sim->c->v[0] = 0.4, sim->u[1]->v[0] = 0;
+  gas = time_step_of_start(sim, 0);
+  two_phase_destroy(sim);
+  for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(dt[k], want[k], 1e-12);
+  ck_assert(gas == HUGE_VAL);
+}
+END_TEST
+
 START_TEST(the_same_conditions_change_nothing) {
   struct params params;
   struct two_phase *sim = bed_at_rest(&params);
@@ -229,6 +252,7 @@ Suite *time_step_suite(void) {
   tcase_add_test(tc, another_gravity_is_a_new_start);
   tcase_add_test(tc, inflow_is_speed_times_area);
   tcase_add_test(tc, a_tilt_is_a_sudden_start);
+  tcase_add_test(tc, grains_that_set_off_may_gain_half_their_speed);
   tcase_add_test(tc, the_same_conditions_change_nothing);
   suite_add_tcase(suite, tc);
   return suite;

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The length of a time step.
  *
- *   1/2 sum |u_f| A dt / V <= cfl         in every leaf: advection
- *   dt <= 0.1 sqrt(h/|g|)                 where grains set off, u^2 < |g| h
- *   dt <= sqrt(h/|gravity|)               of the finest leaves
+ *   1/2 sum |u_f| A dt / V <= cfl             in every leaf: advection
+ *   dt <= max(0.1 sqrt(h/|g|), |u|/(2 |g|))   where grains set off, u^2 < |g| h
+ *   dt <= sqrt(h/|gravity|)                   of the finest leaves
  *   dt <= 1.2 (dt of the last step)
  *
  * The viscosity of grains that set off lags behind their strain rate, hence the
- * second. The third keeps waves of a surface at rest stable: the height of a
- * wave is a step ahead of its pressure, which needs w dt < 2 with w^2 = pi g/h.
+ * second: from rest they go 1/200 of a cell in a step, then their speed may
+ * grow by half. The third keeps waves of a surface at rest stable: the height
+ * of a wave is a step ahead of its pressure, which needs w dt < 2 with w^2 = pi
+ * g/h.
  *
  * The first two look at what the last step has left, and say nothing of a flow
  * that starts suddenly. So a step is repeated with a shorter dt where its own
@@ -25,6 +27,7 @@
 #define TALUS_TWO_PHASE_TIME_STEP_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct two_phase;
 
@@ -35,6 +38,9 @@ double time_step_choose(const struct two_phase *sim, double dt_max,
                         double *rate);
 /* Return the largest 1/2 sum |u_f| A / V, 1/s. Collective. */
 double time_step_rate(const struct two_phase *sim);
+/* Return the longest dt for the grains of leaf i that set off, s; HUGE_VAL:
+ * they do not. */
+double time_step_of_start(const struct two_phase *sim, int32_t i);
 /* Return dt if a step of dt may stand, by the u_f that it has made; else a
  * shorter dt to repeat the step with. Collective. */
 double time_step_allowed(const struct two_phase *sim, double dt);
