@@ -55,6 +55,9 @@ struct step_taken {
 struct model_kind {
   const struct model_keys *keys; /* its name, and what a case may say */
 
+  /* Write in a line what numbers of a case mean, for `talus check` and run.log;
+   * "": nothing. NULL: the model has nothing to say. */
+  void (*describe)(const struct params *params, size_t size, char *text);
   /* Make the initial state. Where the grid would outgrow the memory,
    * grid->outgrown is set and the grid stays coarser. */
   struct model *(*start)(const struct params *params,

@@ -11,6 +11,7 @@
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
+#include "talus/model.h"
 #include "talus/program.h"
 #include "talus/rheology.h"
 #include "talus/run.h"
@@ -115,6 +116,14 @@ static int command_run(int argc, char *argv[]) {
   return status;
 }
 
+/* Print what the model makes of the numbers of a case. */
+static void say_numbers(const struct params *params) {
+  const struct model_kind *kind = models_get(params->model);
+  char text[512] = "";
+  if (kind->describe != NULL) kind->describe(params, sizeof text, text);
+  if (*text != '\0') printf("%s: %s\n", kind->keys->name, text);
+}
+
 static int command_check(int argc, char *argv[]) {
   struct command_line line;
   command_line_read(argc, argv, false, &line);
@@ -128,6 +137,7 @@ static int command_check(int argc, char *argv[]) {
     for (int k = 0; k < case_params(file)->ncovers; k++)
       printf("%s\n", case_params(file)->cover[k]);
     printf("size: %s\n", text);
+    say_numbers(case_params(file));
     fflush(stdout);
     run_size_warn(&size);
     if (!case_finds_grains(file))

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "talus/error.h"
@@ -14,6 +15,7 @@
 #include "talus/two_fluid/start.h"
 #include "talus/two_fluid/state.h"
 #include "talus/two_fluid/step.h"
+#include "talus/two_fluid_drag.h"
 
 static struct two_fluid *of(struct model *model) {
   return (struct two_fluid *)model;
@@ -22,6 +24,24 @@ static struct two_fluid *of(struct model *model) {
 static struct model *model_of(struct two_fluid *sim) {
   sim->model.kind = &two_fluid_model;
   return &sim->model;
+}
+
+/* Name the regime by the bounds that figure 4 of [busch_johansen_2020] has. */
+static const char *regime(double St, double r) {
+  static const double ST = 10, R = 4;
+  if (r > R && St > ST) return "free fall";
+  return St > ST * fmin(r / R, 1) ? "inertial" : "viscous";
+}
+
+static void describe(const struct params *params, size_t size, char *text) {
+  struct two_fluid_closure c;
+  double g2 = 0;
+  two_fluid_closures(params, &c);
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  const double St = two_fluid_stokes_number(&c, sqrt(g2));
+  const double r = two_fluid_density_ratio(&c);
+  snprintf(text, size, "St = %.4g, r = %.4g: grains fall in the regime \"%s\"",
+           St, r, regime(St, r));
 }
 
 static struct model *start(const struct params *params,
@@ -240,6 +260,7 @@ static const char *const STAGES[TWO_FLUID_NSTAGES] = {
 
 const struct model_kind two_fluid_model = {
     .keys = &two_fluid_model_keys,
+    .describe = describe,
     .start = start,
     .resume = resume,
     .destroy = destroy,

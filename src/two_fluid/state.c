@@ -207,22 +207,20 @@ static void add_faces(struct two_fluid *sim) {
                4);
 }
 
-/* Take the numbers of the case for the closures. */
-static void set_closure(struct two_fluid *sim) {
-  const struct two_fluid_keys *keys = sim->keys;
-  struct two_fluid_closure *c = &sim->closure;
+void two_fluid_closures(const struct params *params,
+                        struct two_fluid_closure *c) {
+  const struct two_fluid_keys *keys = params->own;
   *c = keys->closure;
   if (keys->fluid != TWO_FLUID_OWN) two_fluid_take_fluid(c, keys->fluid);
   for (int k = TWO_FLUID_FLUID_DENSITY; k <= TWO_FLUID_FLUID_N; k++)
     if (keys->closure.param[k] != 0) c->param[k] = keys->closure.param[k];
   if (c->param[TWO_FLUID_FLUID_ETA_INF] == 0)
     c->param[TWO_FLUID_FLUID_ETA_INF] = c->param[TWO_FLUID_FLUID_ETA_0];
-  c->param[TWO_FLUID_GRAINS_DENSITY] = sim->params->grains.density;
+  c->param[TWO_FLUID_GRAINS_DENSITY] = params->grains.density;
   if (!(c->param[TWO_FLUID_FLUID_DENSITY] > 0))
     USER_ERROR(
-        "fluid.density is missing: a fluid that has no name, %s, needs "
-        "density and eta_0",
-        "as \"water\" is one");
+        "fluid.density is missing: a fluid that has no name, as \"water\" is "
+        "one, needs density and eta_0");
   const char *wrong = two_fluid_prepare(c);
   if (wrong != NULL)
     USER_ERROR("closures of grains of %g kg/m^3 in a fluid of %g kg/m^3: %s",
@@ -236,7 +234,7 @@ struct two_fluid *two_fluid_new_on(const struct params *params,
   sim->model.grid = &sim->grid;
   sim->params = params;
   sim->keys = params->own;
-  set_closure(sim);
+  two_fluid_closures(params, &sim->closure);
   grid_init(&sim->grid, params, forest);
   add_state(sim);
   add_leaves(sim);

@@ -90,6 +90,10 @@ struct two_fluid {
   double initial; /* energy at t = 0, J/m (3D: J) */
 };
 
+/* Set the closures that a case asks for; a USER_ERROR says what is wrong with
+ * their numbers. */
+void two_fluid_closures(const struct params *params,
+                        struct two_fluid_closure *c);
 /* Make a state of zeros on a forest, which it takes over. Collective. */
 struct two_fluid *two_fluid_new_on(const struct params *params,
                                    struct forest *forest);
