@@ -224,8 +224,9 @@ static const struct key KEYS[] = {
 };
 /* clang-format on */
 
-/* Keys that the model does not know yet. */
-static const char *const REFUSED[] = {"tracers", NULL};
+/* Keys that the model does not know yet; nothing of it has been tried in rings.
+ */
+static const char *const REFUSED[] = {"tracers", "coordinates", NULL};
 
 const struct model_keys two_fluid_model_keys = {
     .name = "two_fluid",

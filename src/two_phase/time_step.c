@@ -11,7 +11,7 @@
 /* dt is at most this times sqrt(h/|g|) of grains at rest that set off. */
 #define DT_ACCELERATION 0.1
 /* Or their speed grows by at most this part of it. */
-#define DT_UNDER_WAY 0.5
+#define DT_UNDER_WAY 0.2
 /* After a step that was too long the next is at least this part of the bound.
  */
 #define DT_SHRINK 0.2

@@ -75,6 +75,9 @@ sed 's/top = "slip"/top = { "inflow", velocity = { 0, -1 }, fraction = 0.5 }/' \
   cliff.lua > in.lua
 ends 2 "$talus" run in.lua -o wrong
 says 'only fluid passes the sides'
+sed 's/dimension = /coordinates = "axisymmetric", &/' cliff.lua > ring.lua
+ends 2 "$talus" check ring.lua
+says 'coordinates = "axisymmetric" is a key of model'
 sed 's/d = 1e-3/d = 1e-3, rho_d = 2/' cliff.lua > key.lua
 ends 2 "$talus" check key.lua
 says 'rho_d'

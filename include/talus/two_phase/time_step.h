@@ -2,15 +2,15 @@
 /* The length of a time step.
  *
  *   1/2 sum |u_f| A dt / V <= cfl             in every leaf: advection
- *   dt <= max(0.1 sqrt(h/|g|), |u|/(2 |g|))   where grains set off, u^2 < |g| h
+ *   dt <= max(0.1 sqrt(h/|g|), |u|/(5 |g|))   where grains set off, u^2 < |g| h
  *   dt <= sqrt(h/|gravity|)                   of the finest leaves
  *   dt <= 1.2 (dt of the last step)
  *
  * The viscosity of grains that set off lags behind their strain rate, hence the
  * second: from rest they go 1/200 of a cell in a step, then their speed may
- * grow by half. The third keeps waves of a surface at rest stable: the height
- * of a wave is a step ahead of its pressure, which needs w dt < 2 with w^2 = pi
- * g/h.
+ * grow by a fifth. The third keeps waves of a surface at rest stable: the
+ * height of a wave is a step ahead of its pressure, which needs w dt < 2 with
+ * w^2 = pi g/h.
  *
  * The first two look at what the last step has left, and say nothing of a flow
  * that starts suddenly. So a step is repeated with a shorter dt where its own
