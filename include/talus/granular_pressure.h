@@ -24,6 +24,7 @@
 #include "talus/solve.h"
 
 struct hierarchy;
+struct scratch;
 
 /* Tells what grains are made of, leaf by leaf. */
 struct granular_material {
@@ -55,6 +56,10 @@ struct granular_pressure {
   double *u_start, *alpha;     /* [nfaces_all] scratch */
 };
 
+/* Take the scratch of `by` from a pool, for `taker` to give back. */
+void granular_pressure_take(struct granular_pressure *by,
+                            struct scratch *scratch, const char *taker);
+
 struct granular_stats {
   int newton;          /* iterations */
   int iterations;      /* of the linear solver, over all of them */
@@ -73,11 +78,6 @@ struct granular_stats granular_pressure_solve(
     const struct granular_pressure *by, double dt, double *u_f, double *p,
     double *nu, double *flux);
 
-/* Return the smaller of a and b if they have one sign, else 0. */
-static inline double granular_minmod(double a, double b) {
-  if (!(a * b > 0)) return 0;
-  return fabs(a) < fabs(b) ? a : b;
-}
 /* Set limited differences of v along d over a leaf, and fill their ghosts.
  * slope [>= nleaves + nghosts]; v filled. Collective. */
 void granular_slopes(const struct mesh *mesh, int d, const double *v,

@@ -22,6 +22,9 @@ extern const struct field_rule remap_average;
 /* Divided leaves lie on the unlimited slopes of the old one, so that the mean
  * is conserved; merged ones take the mean. */
 extern const struct field_rule remap_linear;
+/* Divided leaves lie on limited slopes, so that the content is conserved and
+ * nothing falls below 0; merged ones take the mean by volume. */
+extern const struct field_rule remap_limited;
 /* Values on faces: the halves of a side take its value, inner faces lie between
  * the two sides, merged sides take the mean over their areas. */
 extern const struct field_rule remap_faces;
@@ -44,6 +47,15 @@ double remap_content(const struct remap *remap, const struct field *field,
                      int32_t leaf);
 double remap_on_ring_slopes(const struct remap *remap,
                             const struct field *field, int32_t leaf);
+/* Return the value on limited slopes through the centre of the volume. */
+double remap_on_limited_slopes(const struct remap *remap,
+                               const struct field *field, int32_t leaf);
+/* Return the mean of what each grain has: by the part of old leaf i that
+ * carries the field. Without any, the value of the first. */
+double remap_shared(const struct remap *remap, const struct field *field,
+                    int32_t leaf,
+                    double (*part)(const void *context, int32_t i),
+                    const void *context);
 /* Return the volume of old leaf `child` over the mean of those in a new one. */
 double remap_weight(const struct remap *remap, int32_t leaf, int32_t child);
 /* Give the corners of a new leaf in the old leaf i around it, whose edge is 1

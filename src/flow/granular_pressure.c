@@ -6,6 +6,7 @@
 
 #include "talus/minmax.h"
 #include "talus/poisson.h"
+#include "talus/scratch.h"
 
 /* The linear solves gain this factor on R. */
 static const double LINEAR_GAIN = 1e-2;
@@ -14,12 +15,22 @@ static const double MOST_GIVEN = 0.9;
 
 static const struct bc NEUMANN[MESH_MAX_PATCHES];
 
+void granular_pressure_take(struct granular_pressure *by,
+                            struct scratch *scratch, const char *taker) {
+  double *cell[DIM + 3], *face[2];
+  scratch_take(scratch, FIELD_CELL, taker, DIM + 3, cell);
+  scratch_take(scratch, FIELD_FACE, taker, 2, face);
+  for (int d = 0; d < DIM; d++) by->slope[d] = cell[d];
+  by->change = cell[DIM], by->mass = cell[DIM + 1], by->rhs = cell[DIM + 2];
+  by->u_start = face[0], by->alpha = face[1];
+}
+
 void granular_slopes(const struct mesh *mesh, int d, const double *v,
                      double *slope) {
   const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const int32_t *node = mesh->stencil[i];
-    slope[i] = granular_minmod(v[i] - v[node[lower]], v[node[upper]] - v[i]);
+    slope[i] = minmod(v[i] - v[node[lower]], v[node[upper]] - v[i]);
   }
   mesh_fill_ghosts(mesh, 1, (double *const[]){slope});
 }

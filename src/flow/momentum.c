@@ -22,11 +22,6 @@ void momentum_mark_band(const struct mesh *mesh, const double *c, int rings,
   mesh_fill(mesh, 1, &band, bc, true);
 }
 
-static double minmod(double a, double b) {
-  if (a * b <= 0) return 0;
-  return fabs(a) < fabs(b) ? a : b;
-}
-
 /* Set limited differences of u_e along d, per leaf edge, of leaves that have a
  * face in the band; none in cut leaves. */
 static void limited_slopes(const struct mesh *mesh, int d, const double *c,

@@ -184,10 +184,9 @@ static void check_packing(const struct four_state *sim) {
         most, param[LEE_HUANG_NU_MAX]);
   USER_ERROR(
       "grains would begin at a solid fraction of %.4g at the foot of a column "
-      "in "
-      "balance; above grains.nu_0 = %g their pressure has no bound once they "
-      "move: take a larger grains.K, a smaller grains.chi, a lower column or "
-      "grains.start = \"uniform\"",
+      "in balance; above grains.nu_0 = %g their pressure has no bound once "
+      "they move: take a larger grains.K, a smaller grains.chi, a lower column "
+      "or grains.start = \"uniform\"",
       most, param[LEE_HUANG_NU_0]);
 }
 

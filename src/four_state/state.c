@@ -5,79 +5,29 @@
 #include "talus/forest.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
-#include "talus/openings.h"
 #include "talus/remap.h"
+#include "talus/sides.h"
 
 /* Set the conditions of one boundary for velocity, on a patch across `axis`. */
-static void set_patch(struct four_state *sim, int patch, int axis,
+static void set_patch(void *context, int patch, int axis,
                       const struct boundary *boundary) {
+  struct four_state *sim = context;
   for (int e = 0; e < DIM; e++) {
-    struct bc *bc = &sim->u[e]->bc[patch];
-    *bc = (struct bc){BC_DIRICHLET, 0, 0};
-    if (e == axis) continue;
-    if (boundary->type == BOUNDARY_NO_SLIP) {
-      bc->value = boundary->velocity[e];
-    } else if (boundary->type == BOUNDARY_NAVIER) {
-      bc->type = BC_ROBIN, bc->length = boundary->slip_length;
-    } else {
-      bc->type = BC_NEUMANN;
-    }
+    sim->u[e]->bc[patch] = sides_velocity(boundary, axis, e);
   }
 }
 
-static void set_boundaries(struct four_state *sim) {
-  const struct params *params = sim->params;
-  for (int side = 0; side < NFACE; side++) {
-    set_patch(sim, side, side / 2, &params->boundary[side]);
-  }
-  for (int b = 6; b < params->nboundaries; b++) {
-    for (int axis = 0; axis < DIM; axis++) {
-      set_patch(sim, openings_patch_number(b, axis), axis,
-                &params->boundary[b]);
-    }
-  }
-}
-
-/* Return the limited slope along d over the old leaf i. */
-static double old_slope(const struct remap *remap, const double *v, int32_t i,
-                        int d) {
-  const int32_t *node = remap->mesh->stencil[i];
-  const double lower = v[node[stencil_face(2 * d)]];
-  const double upper = v[node[stencil_face(2 * d + 1)]];
-  return granular_minmod(v[i] - lower, upper - v[i]);
-}
-
-/* Lay new leaves on limited slopes of the old one: the mean is kept and nothing
- * falls below 0. */
-static double divide_mass(const struct remap *remap, const struct field *field,
-                          int32_t leaf) {
-  double lo[DIM], hi[DIM];
-  const int32_t i = remap_box(remap, leaf, lo, hi);
-  const double edge = hi[0] - lo[0];
-  const double centre = mesh_slant(remap->mesh, i) / 6 * (1 - edge * edge);
-  double value = field->v[i];
-  for (int d = 0; d < DIM; d++) {
-    const double away = 0.5 * (lo[d] + hi[d]) - (d == 0 ? centre : 0);
-    value += away * old_slope(remap, field->v, i, d);
-  }
-  return value;
+static double grains_of(const void *context, int32_t i) {
+  const struct four_state *sim = context;
+  return sim->nu->v[i];
 }
 
 /* Take the mean of what each grain has. */
 static double merge_by_mass(const struct remap *remap,
                             const struct field *field, int32_t leaf) {
-  const struct four_state *sim = field->context;
-  const int32_t first = remap->map->first[leaf];
-  double sum = 0, mass = 0;
-  for (int32_t i = first; i < first + remap->map->count[leaf]; i++) {
-    const double grains = sim->nu->v[i] * mesh_volume(remap->mesh, i);
-    sum += grains * field->v[i];
-    mass += grains;
-  }
-  return mass > 0 ? sum / mass : 0;
+  return remap_shared(remap, field, leaf, grains_of, field->context);
 }
 
-static const struct field_rule mass_rule = {divide_mass, remap_content};
 static const struct field_rule grain_rule = {remap_value, merge_by_mass};
 
 static struct field *add(struct four_state *sim, const char *name,
@@ -100,7 +50,7 @@ static void add_state(struct four_state *sim) {
   static const char *const velocity[] = {"velocity_x", "velocity_y",
                                          "velocity_z"};
   sim->nu = add(sim, "solid_fraction", "1", "solid fraction of grains",
-                &mass_rule, true);
+                &remap_limited, true);
   sim->nu->low = 0, sim->nu->high = 1;
   for (int d = 0; d < DIM; d++) {
     sim->u[d] = add(sim, velocity[d], "m/s", "velocity", &grain_rule, true);
@@ -160,7 +110,7 @@ struct four_state *four_state_new_on(const struct params *params,
   grid_init(&sim->grid, params, forest);
   add_state(sim);
   add_made(sim);
-  set_boundaries(sim);
+  sides_set(params, sim, set_patch);
   return sim;
 }
 

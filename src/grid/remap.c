@@ -15,6 +15,7 @@
 #include "talus/forest.h"
 #include "talus/grid.h"
 #include "talus/memory.h"
+#include "talus/minmax.h"
 
 enum { REMAP_MOST = FIELDS_MAX * (NFACE + 1) };
 
@@ -63,15 +64,36 @@ double remap_weight(const struct remap *remap, int32_t leaf, int32_t child) {
   return mesh->x[child][0] / remap->map->x[leaf][0];
 }
 
+/* Return how far the centre of the volume of a leaf lies from its middle, less
+ * that of the volume of a new leaf in it, along r in edges; 0 in a plane. */
+static double ring_centre(const struct remap *remap, int32_t leaf) {
+  const double parts = pow(0.25, remap->map->delta[leaf]);
+  return mesh_slant(remap->mesh, remap->map->first[leaf]) / 6 * (1 - parts);
+}
+
 double remap_on_ring_slopes(const struct remap *remap,
                             const struct field *field, int32_t leaf) {
   const struct mesh *mesh = remap->mesh;
   const int32_t i = remap->map->first[leaf];
   const double value = remap_on_slopes(remap, field, leaf);
   if (!mesh_is_axisymmetric(mesh)) return value;
-  const double parts = pow(0.25, remap->map->delta[leaf]);
-  const double centre = mesh->slant[i] / 6 * (1 - parts); /* of the volume */
-  return value - centre * slope_along(mesh, field->v, i, 0);
+  return value - ring_centre(remap, leaf) * slope_along(mesh, field->v, i, 0);
+}
+
+double remap_on_limited_slopes(const struct remap *remap,
+                               const struct field *field, int32_t leaf) {
+  const struct mesh *mesh = remap->mesh;
+  const int32_t i = remap->map->first[leaf], *node = mesh->stencil[i];
+  const double *v = field->v, centre = ring_centre(remap, leaf);
+  double value = v[i];
+  for (int d = 0; d < DIM; d++) {
+    const double lower = v[i] - v[node[stencil_face(2 * d)]];
+    const double upper = v[node[stencil_face(2 * d + 1)]] - v[i];
+    const double offset =
+        mesh_edges(mesh, i, remap->map->x[leaf][d] - mesh->x[i][d]);
+    value += (offset - (d == 0 ? centre : 0)) * minmod(lower, upper);
+  }
+  return value;
 }
 
 double remap_content(const struct remap *remap, const struct field *field,
@@ -83,6 +105,20 @@ double remap_content(const struct remap *remap, const struct field *field,
     sum += remap_weight(remap, leaf, i) * field->v[i];
   }
   return sum / count;
+}
+
+double remap_shared(const struct remap *remap, const struct field *field,
+                    int32_t leaf,
+                    double (*part)(const void *context, int32_t i),
+                    const void *context) {
+  const int32_t first = remap->map->first[leaf];
+  double sum = 0, mass = 0;
+  for (int32_t i = first; i < first + remap->map->count[leaf]; i++) {
+    const double m = part(context, i) * remap_weight(remap, leaf, i);
+    sum += m * field->v[i];
+    mass += m;
+  }
+  return mass > 0 ? sum / mass : field->v[first];
 }
 
 int32_t remap_box(const struct remap *remap, int32_t leaf, double lo[DIM],
@@ -100,6 +136,8 @@ int32_t remap_box(const struct remap *remap, int32_t leaf, double lo[DIM],
 
 const struct field_rule remap_average = {remap_value, remap_mean};
 const struct field_rule remap_linear = {remap_on_slopes, remap_mean};
+const struct field_rule remap_limited = {remap_on_limited_slopes,
+                                         remap_content};
 const struct field_rule remap_faces = {NULL, NULL};
 const struct field_rule remap_flux = {NULL, NULL};
 

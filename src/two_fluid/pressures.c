@@ -155,9 +155,6 @@ static double find_fraction(const void *context, int32_t i, double p,
 
 struct granular_pressure two_fluid_material(struct two_fluid *sim,
                                             const char *taker) {
-  double *cell[DIM + 3], *face[2];
-  scratch_take(&sim->scratch, FIELD_CELL, taker, DIM + 3, cell);
-  scratch_take(&sim->scratch, FIELD_FACE, taker, 2, face);
   struct granular_pressure by = {
       .mesh = sim->grid.mesh,
       .hierarchy = sim->grid.hierarchy,
@@ -169,13 +166,8 @@ struct granular_pressure two_fluid_material(struct two_fluid *sim,
       .least_slope = LEAST_SLOPE,
       .tolerance = PRESSURE_FACTOR * sim->params->tolerance_pressure,
       .max_newton = MOST_NEWTON,
-      .max_iterations = sim->params->max_iterations,
-      .change = cell[DIM],
-      .mass = cell[DIM + 1],
-      .rhs = cell[DIM + 2],
-      .u_start = face[0],
-      .alpha = face[1]};
-  for (int d = 0; d < DIM; d++) by.slope[d] = cell[d];
+      .max_iterations = sim->params->max_iterations};
+  granular_pressure_take(&by, &sim->scratch, taker);
   return by;
 }
 

@@ -6,103 +6,46 @@
 #include "talus/forest.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
-#include "talus/openings.h"
 #include "talus/remap.h"
+#include "talus/sides.h"
 
-/* Set the conditions of one boundary for the velocity of a phase, on a patch
- * across `axis`. Where fluid passes, grains find a smooth wall. */
-static void set_velocity(struct two_fluid *sim, int phase, int patch, int axis,
-                         const struct boundary *boundary) {
-  const enum boundary_type type = boundary->type;
-  const bool fluid = phase == TWO_FLUID_F;
-  for (int e = 0; e < DIM; e++) {
-    struct bc *bc = &sim->u[phase][e]->bc[patch];
-    *bc = (struct bc){BC_DIRICHLET, 0, 0};
-    if (fluid && type == BOUNDARY_INFLOW) {
-      bc->value = boundary->velocity[e];
-    } else if (fluid && type == BOUNDARY_OUTFLOW) {
-      bc->type = BC_NEUMANN;
-    } else if (e == axis) {
-      continue;
-    } else if (type == BOUNDARY_NO_SLIP) {
-      bc->value = boundary->velocity[e];
-    } else if (type == BOUNDARY_NAVIER) {
-      bc->type = BC_ROBIN, bc->length = boundary->slip_length;
-    } else {
-      bc->type = BC_NEUMANN;
-    }
-  }
-}
-
-static void set_patch(struct two_fluid *sim, int patch, int axis,
+/* Set the conditions of one boundary, on a patch across `axis`. Where fluid
+ * passes, grains find a smooth wall. */
+static void set_patch(void *context, int patch, int axis,
                       const struct boundary *boundary) {
-  for (int k = 0; k < TWO_FLUID_NPHASES; k++)
-    set_velocity(sim, k, patch, axis, boundary);
-  if (boundary->type == BOUNDARY_OUTFLOW)
+  static const struct boundary smooth = {.type = BOUNDARY_SLIP};
+  struct two_fluid *sim = context;
+  const bool outflow = boundary->type == BOUNDARY_OUTFLOW;
+  const bool open = outflow || boundary->type == BOUNDARY_INFLOW;
+  for (int e = 0; e < DIM; e++) {
+    sim->u[TWO_FLUID_F][e]->bc[patch] = sides_velocity(boundary, axis, e);
+    sim->u[TWO_FLUID_S][e]->bc[patch] =
+        sides_velocity(open ? &smooth : boundary, axis, e);
+  }
+  if (outflow)
     sim->p->bc[patch] = (struct bc){BC_DIRICHLET, boundary->pressure, 0};
 }
 
-static void set_boundaries(struct two_fluid *sim) {
-  const struct params *params = sim->params;
-  for (int side = 0; side < NFACE; side++) {
-    set_patch(sim, side, side / 2, &params->boundary[side]);
-  }
-  for (int b = 6; b < params->nboundaries; b++) {
-    for (int axis = 0; axis < DIM; axis++) {
-      set_patch(sim, openings_patch_number(b, axis), axis,
-                &params->boundary[b]);
-    }
-  }
+static double solid_of(const void *context, int32_t i) {
+  const struct two_fluid *sim = context;
+  return two_fluid_part(TWO_FLUID_S, sim->alpha->v[i]);
 }
 
-/* Return the limited slope along d over the old leaf i. */
-static double old_slope(const struct remap *remap, const double *v, int32_t i,
-                        int d) {
-  const int32_t *node = remap->mesh->stencil[i];
-  const double lower = v[node[stencil_face(2 * d)]];
-  const double upper = v[node[stencil_face(2 * d + 1)]];
-  return granular_minmod(v[i] - lower, upper - v[i]);
-}
-
-/* Lay new leaves on limited slopes of the old one: the mean is kept and nothing
- * falls below 0. */
-static double divide_mass(const struct remap *remap, const struct field *field,
-                          int32_t leaf) {
-  double lo[DIM], hi[DIM];
-  const int32_t i = remap_box(remap, leaf, lo, hi);
-  double value = field->v[i];
-  for (int d = 0; d < DIM; d++) {
-    value += 0.5 * (lo[d] + hi[d]) * old_slope(remap, field->v, i, d);
-  }
-  return value;
-}
-
-/* Take the mean of what each part of a phase has. */
-static double merge_by(const struct remap *remap, const struct field *field,
-                       int32_t leaf, int phase) {
-  const struct two_fluid *sim = field->context;
-  const int32_t first = remap->map->first[leaf];
-  double sum = 0, mass = 0;
-  for (int32_t i = first; i < first + remap->map->count[leaf]; i++) {
-    const double m =
-        two_fluid_part(phase, sim->alpha->v[i]) * remap_weight(remap, leaf, i);
-    sum += m * field->v[i];
-    mass += m;
-  }
-  return mass > 0 ? sum / mass : field->v[first];
+static double fluid_of(const void *context, int32_t i) {
+  const struct two_fluid *sim = context;
+  return two_fluid_part(TWO_FLUID_F, sim->alpha->v[i]);
 }
 
 static double merge_solid(const struct remap *remap, const struct field *field,
                           int32_t leaf) {
-  return merge_by(remap, field, leaf, TWO_FLUID_S);
+  return remap_shared(remap, field, leaf, solid_of, field->context);
 }
 
 static double merge_fluid(const struct remap *remap, const struct field *field,
                           int32_t leaf) {
-  return merge_by(remap, field, leaf, TWO_FLUID_F);
+  return remap_shared(remap, field, leaf, fluid_of, field->context);
 }
 
-static const struct field_rule mass_rule = {divide_mass, remap_content};
 static const struct field_rule solid_rule = {remap_value, merge_solid};
 static const struct field_rule fluid_rule = {remap_value, merge_fluid};
 
@@ -139,7 +82,7 @@ static void add_state(struct two_fluid *sim) {
                                       "velocity of the fluid"};
   static const struct field_rule *const rule[] = {&solid_rule, &fluid_rule};
   sim->alpha = add(sim, "solid_fraction", "1", "solid fraction of grains",
-                   &mass_rule, true);
+                   &remap_limited, true);
   sim->alpha->low = 0, sim->alpha->high = 1;
   for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
     for (int d = 0; d < DIM; d++) {
@@ -239,7 +182,7 @@ struct two_fluid *two_fluid_new_on(const struct params *params,
   add_state(sim);
   add_leaves(sim);
   add_faces(sim);
-  set_boundaries(sim);
+  sides_set(params, sim, set_patch);
   return sim;
 }
 

@@ -7,6 +7,7 @@
 #include "talus/memory.h"
 #include "talus/minmax.h"
 #include "talus/momentum.h"
+#include "talus/outline.h"
 #include "talus/two_phase/state.h"
 #include "talus/two_phase/time_step.h"
 #include "talus/vof.h"
@@ -159,15 +160,6 @@ static void sweep_both(struct carriage *k, int a, int b) {
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Return the axis that gravity is nearest to. */
-static int vertical_axis(const struct params *params) {
-  int axis = DIM - 1;
-  for (int d = 0; d < DIM; d++) {
-    if (fabs(params->gravity[d]) > fabs(params->gravity[axis])) axis = d;
-  }
-  return axis;
-}
-
 /* Sweep along all axes, in an order that turns from step to step. In 3D the
  * horizontal axes are alike. */
 static void sweep(struct carriage *k) {
@@ -177,7 +169,7 @@ static void sweep(struct carriage *k) {
     fill(k), sweep_along(k, 1 - turn);
     return;
   }
-  const int d = vertical_axis(k->sim->params);
+  const int d = outline_axis(k->sim->params->gravity);
   if (turn == 0) sweep_along(k, d), fill(k);
   sweep_both(k, (d + 1) % DIM, (d + 2) % DIM);
   if (turn == 1) fill(k), sweep_along(k, d);

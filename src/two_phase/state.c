@@ -7,55 +7,26 @@
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
-#include "talus/openings.h"
 #include "talus/remap.h"
+#include "talus/sides.h"
 #include "talus/skin.h"
 #include "talus/slip_strip.h"
 #include "talus/vof.h"
 
 /* Set the conditions of one boundary, on a patch across `axis`. */
-static void set_patch(struct two_phase *sim, int patch, int axis,
+static void set_patch(void *context, int patch, int axis,
                       const struct boundary *boundary) {
-  const bool open = boundary->type == BOUNDARY_OUTFLOW;
+  struct two_phase *sim = context;
   for (int e = 0; e < DIM; e++) {
-    struct bc *bc = &sim->u[e]->bc[patch];
-    bc->value = boundary->velocity[e];
-    if (open) {
-      *bc = (struct bc){BC_NEUMANN, 0, 0};
-    } else if (boundary->type == BOUNDARY_SLIP ||
-               boundary->type == BOUNDARY_NAVIER) {
-      if (e == axis) {
-        *bc = (struct bc){BC_DIRICHLET, 0, 0};
-      } else if (boundary->type == BOUNDARY_NAVIER) {
-        bc->type = BC_ROBIN, bc->length = boundary->slip_length;
-      } else {
-        *bc = (struct bc){BC_NEUMANN, 0, 0};
-      }
-    } else {
-      bc->type = BC_DIRICHLET; /* a wall moves along itself only */
-      if (boundary->type != BOUNDARY_INFLOW && e == axis) bc->value = 0;
-    }
+    sim->u[e]->bc[patch] = sides_velocity(boundary, axis, e);
   }
-  if (open) {
+  if (boundary->type == BOUNDARY_OUTFLOW) {
     sim->p->bc[patch] = (struct bc){BC_DIRICHLET, boundary->pressure, 0};
   }
   if (boundary->type == BOUNDARY_INFLOW) {
     sim->c->bc[patch] = (struct bc){BC_CARRIED, boundary->fraction, 0};
     for (int k = 0; k < sim->params->ntracers; k++) {
       sim->tracer[k]->bc[patch] = (struct bc){BC_CARRIED, 0, 0};
-    }
-  }
-}
-
-static void set_boundaries(struct two_phase *sim) {
-  const struct params *params = sim->params;
-  for (int side = 0; side < NFACE; side++) {
-    set_patch(sim, side, side / 2, &params->boundary[side]);
-  }
-  for (int b = 6; b < params->nboundaries; b++) {
-    for (int axis = 0; axis < DIM; axis++) {
-      set_patch(sim, openings_patch_number(b, axis), axis,
-                &params->boundary[b]);
     }
   }
 }
@@ -270,7 +241,7 @@ struct two_phase *two_phase_new_on(const struct params *params,
   grid_init(&sim->grid, params, forest);
   add_state(sim);
   add_scratch(sim);
-  set_boundaries(sim);
+  sides_set(params, sim, set_patch);
   return sim;
 }
 
