@@ -10,12 +10,16 @@
 #include "talus/forest.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
+#include "talus/outline.h"
 #include "talus/two_fluid/measure.h"
 #include "talus/two_fluid/properties.h"
 #include "talus/two_fluid/start.h"
 #include "talus/two_fluid/state.h"
 #include "talus/two_fluid/step.h"
 #include "talus/two_fluid_drag.h"
+
+/* A run may make this part of weight times height of its grains. */
+static const double MOST_MADE = 0.02;
 
 static struct two_fluid *of(struct model *model) {
   return (struct two_fluid *)model;
@@ -225,6 +229,29 @@ static void set_row(const struct two_fluid *sim,
   value[WALL_SECONDS] = model->wall_seconds;
 }
 
+/* Warn once of a run that makes energy: it is not to be believed. */
+static void check_energy(const struct two_fluid *sim,
+                         const struct two_fluid_measures *m, double lost) {
+  const struct params *params = sim->params;
+  const double *param = sim->closure.param;
+  const double rho =
+      fabs(param[TWO_FLUID_GRAINS_DENSITY] - param[TWO_FLUID_FLUID_DENSITY]);
+  const double g = fabs(params->gravity[outline_axis(params->gravity)]);
+  const double most = rho * g * m->volume * m->grain_height;
+  for (int d = 0; d < DIM; d++) { /* gravity drives such a flow for ever */
+    if (params->gravity[d] != 0 &&
+        params->boundary[2 * d].type == BOUNDARY_PERIODIC)
+      return;
+  }
+  if (two_fluid_is_driven(sim) || !(-lost > MOST_MADE * most)) return;
+  WARN_ONCE(
+      "at time %.4g, step %lld, there are %.3g J more than at the start, %.2g "
+      "of weight times height of the grains: they have burst, and the run is "
+      "not right from here on; it may be for a start that is denser than the "
+      "closures hold (grains.start = \"settled\" is in balance)",
+      sim->model.time, (long long)sim->model.step, -lost, -lost / most);
+}
+
 static void measure(struct model *model, double value[],
                     struct model_outline *outline) {
   struct two_fluid *sim = of(model);
@@ -232,6 +259,7 @@ static void measure(struct model *model, double value[],
   two_fluid_measure(sim, &m);
   if (model->step == 0) sim->initial = two_fluid_energy(sim);
   set_row(sim, &m, value);
+  check_energy(sim, &m, value[LOST]);
   if (outline) {
     memset(outline, 0, sizeof *outline);
     outline->outline = m.outline;

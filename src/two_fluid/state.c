@@ -186,6 +186,16 @@ struct two_fluid *two_fluid_new_on(const struct params *params,
   return sim;
 }
 
+bool two_fluid_is_driven(const struct two_fluid *sim) {
+  bool driven = false;
+  for (int b = 0; b < MESH_MAX_PATCHES; b++)
+    for (int d = 0; d < DIM; d++)
+      driven |= sim->u[TWO_FLUID_F][d]->bc[b].value != 0 ||
+                sim->u[TWO_FLUID_S][d]->bc[b].value != 0 ||
+                sim->p->bc[b].value != 0;
+  return driven;
+}
+
 void two_fluid_destroy(struct two_fluid *sim) {
   if (!sim) return;
   grid_release(&sim->grid);

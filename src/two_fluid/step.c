@@ -64,7 +64,7 @@ enum { RETRIES = 8 };
 #define STALL_FLOOR 1e-12
 /* Both phases may have this times the kinetic energy that is accounted for:
  * what grains are pressed by may do work over this strain. */
-#define BURST 4
+#define BURST 1.05
 #define STRAIN 0.01
 
 /* Let the plastic packing and the shear that makes pressure follow the shear
@@ -150,23 +150,12 @@ static struct energy energy_of(const struct two_fluid *sim) {
                          mesh_sum(mesh, sum.stored)};
 }
 
-/* Do walls or a given flow drive the phases? */
-static bool is_driven(const struct two_fluid *sim) {
-  bool driven = false;
-  for (int b = 0; b < MESH_MAX_PATCHES; b++)
-    for (int d = 0; d < DIM; d++)
-      driven |= sim->u[TWO_FLUID_F][d]->bc[b].value != 0 ||
-                sim->u[TWO_FLUID_S][d]->bc[b].value != 0 ||
-                sim->p->bc[b].value != 0;
-  return driven;
-}
-
 /* Return how much kinetic energy there is for each J that gravity over dt and
  * p_s may have made of what there was before. */
 static double burst(const struct two_fluid *sim, double dt,
                     const struct energy *before) {
   double g2 = 0;
-  if (is_driven(sim)) return 0;
+  if (two_fluid_is_driven(sim)) return 0;
   for (int d = 0; d < DIM; d++)
     g2 += sim->params->gravity[d] * sim->params->gravity[d];
   const double fall = sqrt(0.5 * before->mass * g2) * dt;

@@ -82,4 +82,11 @@ sed 's/d = 1e-3/d = 1e-3, rho_d = 2/' cliff.lua > key.lua
 ends 2 "$talus" check key.lua
 says 'rho_d'
 
+# a run that makes energy is not passed over
+ends 0 "$talus" run "$root/examples/submarine.lua" dense=1 stop=0.16 -o dense \
+  --quiet
+says 'J more than at the start.*they have burst'
+ends 0 "$talus" run "$root/examples/submarine.lua" stop=0.1 -o loose --quiet
+grep -q burst output && complain "a run that makes no energy is warned of"
+
 [ "$failures" -eq 0 ]

@@ -107,6 +107,8 @@ static inline void two_fluid_lap(struct two_fluid *sim,
                                  enum two_fluid_stage stage) {
   stopwatch_lap(&sim->model.stopwatch, stage);
 }
+/* Do walls, a given flow or a pressure drive the phases? */
+bool two_fluid_is_driven(const struct two_fluid *sim);
 /* Return density rho_s or rho_f. */
 static inline double two_fluid_density(const struct two_fluid *sim, int phase) {
   return sim->closure.param[phase == TWO_FLUID_S ? TWO_FLUID_GRAINS_DENSITY
