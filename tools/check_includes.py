@@ -48,7 +48,7 @@ LIST = "src/models.c"
 HEADER_ONLY = {"minmax": "base", "params": "params", "solve": "solver",
                "hash": "base", "morton": "tree", "columns": "base",
                "scalars": "base", "stopwatch": "base", "poison": "base",
-               "key": "params", "model": "models"}
+               "key": "base", "model": "models"}
 
 # Foreign headers: pattern -> folders or files that may include them.
 FOREIGN = {

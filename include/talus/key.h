@@ -63,6 +63,8 @@ struct model_keys {
   const char *title; /* one line */
   const struct key *keys;
   int nkeys;
+  const struct key *more; /* numbers of its closures; none if nmore is 0 */
+  int nmore;
   /* Bytes of the struct that holds the values of the keys, params.own; 0: they
    * are members of struct params. Only types up to KEY_CHOICE are allowed in a
    * struct of its own. */
@@ -72,6 +74,14 @@ struct model_keys {
   const char *const *refused;
   bool strips; /* it calls slip_strip_renew, so that sides may be strips */
 };
+
+/* Return key k of a model, those of `more` last; NULL past the end. */
+static inline const struct key *model_key(const struct model_keys *model,
+                                          int k) {
+  if (k < model->nkeys) return &model->keys[k];
+  return k < model->nkeys + model->nmore ? &model->more[k - model->nkeys]
+                                         : NULL;
+}
 
 /* Return the keys of model k of src/models.c; NULL past the last. */
 const struct model_keys *models_keys(int k);

@@ -16,6 +16,7 @@
 #ifndef TALUS_TWO_FLUID_CLOSURE_H
 #define TALUS_TWO_FLUID_CLOSURE_H
 
+#include "talus/key.h"
 #include "talus/rheology.h"
 
 /* The choices, in the order of their names. */
@@ -45,16 +46,16 @@ extern const char *const two_fluid_frictional_names[];
 extern const char *const two_fluid_friction_names[];
 extern const char *const two_fluid_production_names[];
 
-/* Numbers, in the order of two_fluid_keys. The first part of a name is the
+/* Numbers, in the order of two_fluid_numbers. The first part of a name is the
  * section of the case that holds the number; those of a set are for that set
  * alone. */
 enum two_fluid_param {
+  TWO_FLUID_GRAINS_DENSITY,
   TWO_FLUID_FLUID_DENSITY,
   TWO_FLUID_FLUID_ETA_0,
   TWO_FLUID_FLUID_ETA_INF,
   TWO_FLUID_FLUID_LAMBDA,
   TWO_FLUID_FLUID_N,
-  TWO_FLUID_GRAINS_DENSITY,
   TWO_FLUID_GRAINS_D,
   TWO_FLUID_DRAG_ERGUN_VISCOUS,
   TWO_FLUID_DRAG_ERGUN_INERTIAL,
@@ -107,13 +108,6 @@ enum two_fluid_param {
   TWO_FLUID_NKEYS
 };
 
-/* Says what a number is called and may be. */
-struct two_fluid_key {
-  const char *section; /* "fluid", "grains", "drag" or the name of a set */
-  struct rheology_key key;
-};
-extern const struct two_fluid_key two_fluid_keys[TWO_FLUID_NKEYS];
-
 /* Numbers that the sets of grains but ktgf share, made by two_fluid_prepare. */
 struct two_fluid_shearing {
   double mu_1, mu_2, number_0; /* number_0: J_0 or I_0 */
@@ -134,15 +128,19 @@ struct two_fluid_closure {
   struct two_fluid_shearing by; /* by two_fluid_prepare */
 };
 
+/* Names of the numbers in a case, "section.name", and their ranges; offsets are
+ * in struct two_fluid_closure. Without a default: those of a fluid, which may
+ * have a name. The density of a grain is a key of all models. */
+extern const struct key two_fluid_numbers[TWO_FLUID_NKEYS];
+
 /* Set the defaults of a set of closures in water. */
 void two_fluid_closure_init(struct two_fluid_closure *c,
                             enum two_fluid_set set);
 /* Set the five numbers of a fluid known by name, not TWO_FLUID_OWN. */
 void two_fluid_take_fluid(struct two_fluid_closure *c,
                           enum two_fluid_fluid fluid);
-/* Return the index of `section`.`name`, of the first `name` if section is
- * NULL; -1 if there is none. */
-int two_fluid_find_key(const char *section, const char *name);
+/* Return the index of `section`.`name`, -1 if there is none. */
+int two_fluid_find_number(const char *section, const char *name);
 /* Make what the functions below need, once all numbers are set. Returns NULL,
  * or what is wrong with the numbers taken together. */
 const char *two_fluid_prepare(struct two_fluid_closure *c);

@@ -132,8 +132,10 @@ static void read_key(struct case_file *file, const struct key *key,
 /* Give the struct that holds the value of a key. */
 static void *base_of(struct case_file *file, const struct key *key) {
   const struct model_keys *model = model_of(file);
-  const bool own = key >= model->keys && key < model->keys + model->nkeys;
-  return own && model->own_size > 0 ? file->params.own : &file->params;
+  const struct key *own;
+  for (int k = 0; (own = model_key(model, k)) != NULL; k++)
+    if (own == key && model->own_size > 0) return file->params.own;
+  return &file->params;
 }
 
 /* Read the model first, since the other keys depend on it. */

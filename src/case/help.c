@@ -181,12 +181,13 @@ static void print_line(FILE *f, const struct key *key) {
 
 /* Print the keys that a model has instead of those of the first one. */
 static void print_model(FILE *f, const struct model_keys *model) {
+  const struct key *key;
   fprintf(f, "\nKeys of model = \"%s\" (%s)", model->name, model->title);
   fprintf(f, " instead of\nthose of \"%s\"", models_keys(0)->name);
   for (int k = 0; k < models_keys(0)->nkeys; k++)
     fprintf(f, "%s%s", k == 0 ? ", " : " ", models_keys(0)->keys[k].path);
   fputs("\n", f);
-  for (int k = 0; k < model->nkeys; k++) print_line(f, &model->keys[k]);
+  for (int k = 0; (key = model_key(model, k)) != NULL; k++) print_line(f, key);
 }
 
 void case_help(FILE *f) {

@@ -211,8 +211,8 @@ const struct key *keys_get(const struct model_keys *model, int i) {
   int mark = 0;
   while (KEYS[mark].type != KEY_OF_MODEL) mark++;
   if (i < mark) return &KEYS[i];
-  if (i < mark + model->nkeys) return &model->keys[i - mark];
-  return GET(KEYS, i - model->nkeys + 1);
+  const struct key *own = model_key(model, i - mark);
+  return own != NULL ? own : GET(KEYS, i - model->nkeys - model->nmore + 1);
 }
 
 bool keys_takes(const struct model_keys *model, const char *path) {

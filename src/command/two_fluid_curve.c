@@ -100,10 +100,12 @@ static bool set_choice(struct request *request, const char *word) {
 
 /* Return whether a number is for another set of closures. */
 static bool foreign(const struct request *request, int k) {
-  const char *section = two_fluid_keys[k].section;
-  for (int set = 0; two_fluid_set_names[set] != NULL; set++)
-    if (strcmp(section, two_fluid_set_names[set]) == 0)
+  const char *path = two_fluid_numbers[k].path;
+  for (int set = 0; two_fluid_set_names[set] != NULL; set++) {
+    const size_t n = strlen(two_fluid_set_names[set]);
+    if (strncmp(path, two_fluid_set_names[set], n) == 0 && path[n] == '.')
       return set != (int)request->c.set;
+  }
   return false;
 }
 
@@ -117,11 +119,11 @@ static int find_number(const struct request *request, const char *word) {
   char *dot = strchr(name, '.');
   if (dot != NULL) {
     *dot = '\0';
-    return two_fluid_find_key(name, dot + 1);
+    return two_fluid_find_number(name, dot + 1);
   }
   int k = -1;
   for (int i = 0; i < 4 && k < 0; i++)
-    k = two_fluid_find_key(sections[i], name);
+    k = two_fluid_find_number(sections[i], name);
   return k;
 }
 
@@ -131,9 +133,8 @@ static _Noreturn void refuse_key(const struct request *request,
   size_t used = 0;
   for (int k = 0; k < TWO_FLUID_NKEYS; k++)
     if (!foreign(request, k))
-      used += (size_t)snprintf(known + used, sizeof known - used, " %s.%s",
-                               two_fluid_keys[k].section,
-                               two_fluid_keys[k].key.name);
+      used += (size_t)snprintf(known + used, sizeof known - used, " %s",
+                               two_fluid_numbers[k].path);
   USER_ERROR(
       "%s: two_fluid with closure=%s has no such key; known: p phi_p closure "
       "fluid drag frictional_pressure friction production%s",
@@ -164,9 +165,9 @@ static void set_number(struct request *request, const char *word) {
   }
   const int k = strchr(word, '=') != NULL ? find_number(request, word) : -1;
   if (k < 0 || foreign(request, k)) refuse_key(request, word);
-  const struct rheology_key *key = &two_fluid_keys[k].key;
+  const struct key *key = &two_fluid_numbers[k];
   request->c.param[k] =
-      read_number(word, strchr(word, '=') + 1, key->min, key->max, key->help);
+      read_number(word, strchr(word, '=') + 1, key->low, key->high, key->help);
 }
 
 /* Read choices before numbers, as these depend on the set and the fluid. */

@@ -3,6 +3,8 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "two_fluid_sets.h"
@@ -36,14 +38,15 @@ void two_fluid_closure_init(struct two_fluid_closure *c,
                             enum two_fluid_set set) {
   *c = (struct two_fluid_closure){.set = set};
   for (int k = 0; k < TWO_FLUID_NKEYS; k++)
-    c->param[k] = two_fluid_keys[k].key.initial;
+    c->param[k] = strtod(two_fluid_numbers[k].fallback, NULL);
+  two_fluid_take_fluid(c, TWO_FLUID_WATER);
 }
 
-int two_fluid_find_key(const char *section, const char *name) {
+int two_fluid_find_number(const char *section, const char *name) {
+  char path[128];
+  snprintf(path, sizeof path, "%s.%s", section, name);
   for (int k = 0; k < TWO_FLUID_NKEYS; k++)
-    if (strcmp(two_fluid_keys[k].key.name, name) == 0 &&
-        (section == NULL || strcmp(two_fluid_keys[k].section, section) == 0))
-      return k;
+    if (strcmp(two_fluid_numbers[k].path, path) == 0) return k;
   return -1;
 }
 

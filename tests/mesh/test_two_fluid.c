@@ -31,29 +31,6 @@ static struct params with_levels(struct params p, int which) {
   return p;
 }
 
-/* The keys of a case have the names, ranges and defaults of the closures. */
-START_TEST(keys_are_those_of_the_closures) {
-  for (int k = 0; k < TWO_FLUID_NKEYS; k++) {
-    const struct two_fluid_key *number = &two_fluid_keys[k];
-    const size_t offset = offsetof(struct two_fluid_keys, closure.param) +
-                          (size_t)k * sizeof(double);
-    const struct key *found = NULL;
-    char path[64];
-    snprintf(path, sizeof path, "%s.%s", number->section, number->key.name);
-    for (int i = 0; i < two_fluid_model_keys.nkeys; i++)
-      if (strcmp(two_fluid_model_keys.keys[i].path, path) == 0)
-        found = &two_fluid_model_keys.keys[i];
-    if (k == TWO_FLUID_GRAINS_DENSITY) continue; /* the key of all models */
-    ck_assert_msg(found != NULL, "%s", path);
-    ck_assert_uint_eq(found->offset, offset);
-    ck_assert_double_eq(found->low, number->key.min);
-    ck_assert_double_eq(found->high, number->key.max);
-    if (strcmp(number->section, "fluid") == 0) continue;
-    ck_assert_double_eq(strtod(found->fallback, NULL), number->key.initial);
-  }
-}
-END_TEST
-
 /* A settled bed stays: the flux is that of the last consolidation, from the
  * continuous balance to that of the leaves. Water, and air, where drag is slow;
  * surfaces on faces and between; levels that jump across it and along it. */
@@ -162,7 +139,6 @@ Suite *two_fluid_suite(void) {
   Suite *suite = suite_create("two_fluid");
   TCase *keys = tcase_create("keys"), *rest = tcase_create("rest");
   TCase *flow = tcase_create("flow");
-  tcase_add_test(keys, keys_are_those_of_the_closures);
   tcase_add_loop_test(rest, a_settled_bed_rests, 0, DIM == 2 ? 12 : 4);
   if (DIM == 2) tcase_add_loop_test(rest, a_plastic_bed_rests, 0, 2);
   tcase_add_test(flow, a_bed_falls_and_lands);

@@ -21,8 +21,8 @@ static inline struct two_fluid_keys grains_keys(enum two_fluid_set set,
                                                 enum two_fluid_fluid fluid) {
   struct two_fluid_keys keys;
   memset(&keys, 0, sizeof keys);
-  for (int k = 0; k < two_fluid_model_keys.nkeys; k++) {
-    const struct key *key = &two_fluid_model_keys.keys[k];
+  const struct key *key;
+  for (int k = 0; (key = model_key(&two_fluid_model_keys, k)) != NULL; k++) {
     if (key->type != KEY_NUMBER) continue;
     *(double *)(void *)((char *)&keys + key->offset) =
         strtod(key->fallback, NULL);

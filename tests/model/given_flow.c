@@ -19,8 +19,9 @@ static const struct key KEYS[] = {
     {"shear_rate", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "1", .unit = "1/s",
      .offset = offsetof(struct flow, rate), .help = "shear rate"}};
 static const char *const REFUSED[] = {"tracers", "velocity", "output.stop_at_rest", NULL};
-static const struct model_keys keys = {"given_flow", "grains in a shear flow",
-    KEYS, 1, sizeof(struct flow), REFUSED, false};
+static const struct model_keys keys = {.name = "given_flow",
+    .title = "grains in a shear flow", .keys = KEYS, .nkeys = 1,
+    .own_size = sizeof(struct flow), .refused = REFUSED};
 /* clang-format on */
 
 struct given_flow {
