@@ -133,8 +133,14 @@ static void set_cap(struct two_fluid *sim, int axis) {
   const double H = height_of(sim, axis);
   const double load = weight_of(sim, axis) * sim->keys->alpha_start * H;
   sim->eta_max = sim->keys->eta_max;
-  if (sim->eta_max == 0)
-    sim->eta_max = load > 0 ? 0.5 * load * H / (CREEP * sqrt(g * H)) : 1e30;
+  if (sim->eta_max == 0 && H > 0 && !(load > 0))
+    USER_ERROR(
+        "grains.eta_max is missing: without weight (gravity %g along axis %d) "
+        "nothing tells how stiff grains may be. Give it, in Pa s: many times "
+        "density * size^2/(time of the flow)",
+        g, axis);
+  if (sim->eta_max == 0 && load > 0)
+    sim->eta_max = 0.5 * load * H / (CREEP * sqrt(g * H));
   if (load > 0)
     log_info(
         "viscosity of the grains is at most %.3g Pa s: a slope of 20 degrees, "
