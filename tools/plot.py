@@ -398,7 +398,10 @@ def draw_length(ax, s, units):
 def draw_energy(ax, s, parameters, change):
     scale = abs(s["kinetic"][0] + s["potential"][0]) or 1.0
     for name, colour in (("potential", BLUE), ("kinetic", EARTH),
-                         ("dissipated", RED), ("numerical", GREY)):
+                         ("dissipated", RED), ("impact", GREEN),
+                         ("numerical", GREY)):
+        if name not in s:
+            continue
         ax.plot(s["time"], s[name] / scale, color=colour, label=name_of_rest(
             parameters, change) if name == "numerical" else name)
     ax.set_title("energy of the grains", loc="left")

@@ -43,9 +43,8 @@ struct four_state_closure {
   double p_D[2];  /* p_D/(rho_d T) at nu_D and its slope */
   double p_K[2];  /* p_K/(rho_d T) at nu_0 and its slope */
   double p_ES[2]; /* p_ES at nu_max and its slope, Pa */
-  /* max(p_K, p_D)/(rho_d T) and its slope, p_ES and its slope, at nodes every
-   * 1/per_nu up to nu_max; owned */
-  double (*table)[4];
+  /* Curves and their slopes at nodes every 1/per_nu up to nu_max; owned */
+  double (*table)[8];
   double per_nu;
 };
 

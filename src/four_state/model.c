@@ -123,6 +123,7 @@ enum {
   CONDUCTION_ITERATIONS,
   WALL_SECONDS,
   WORK_OF_CHANGES,
+  IMPACT,
   NCOLUMNS
 };
 
@@ -151,10 +152,9 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [DISSIPATED] = {"dissipated", COLUMN_SHORT, "J/m (3D: J)",
                     "by friction and collisions since the start"},
     [NUMERICAL] = {"numerical", COLUMN_SHORT, "J/m (3D: J)",
-                   "what all these miss of the start and of work_of_changes, "
-                   "but for what gravity brings along a periodic side: lost by the scheme, in "
-                   "impacts first of all, and what p_K and p_D do on grains "
-                   "that expand, which eq. 3 leaves out"},
+                   "what all these and impact miss of the start and of "
+                   "work_of_changes, but for what gravity brings along a "
+                   "periodic side: lost by the scheme"},
     [MAX_SPEED] = {"max_speed", COLUMN_SHORT, "m/s", "within the contour"},
     [GRAIN_SPEED] = {"grain_speed", COLUMN_SHORT, "m/s",
                      "root of the mean square over all grains"},
@@ -177,6 +177,10 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [WORK_OF_CHANGES] = {"work_of_changes", COLUMN_SHORT, "J/m (3D: J)",
                          "energy that restarts with another gravity or other "
                          "grains have added"},
+    [IMPACT] = {"impact", COLUMN_SHORT, "J/m (3D: J)",
+                "work against the pressure of grains that their packing has "
+                "not stored: lost by grains that land on others; less where p_K "
+                "and p_D drive grains apart, which eq. 3 leaves out"},
 };
 /* clang-format on */
 
@@ -199,7 +203,8 @@ static void set_row(const struct four_state *sim,
   value[ELASTIC] = m->elastic;
   value[DISSIPATED] = sim->dissipated;
   value[NUMERICAL] = sim->initial + sim->changed - m->kinetic - m->potential -
-                     m->fluctuating - m->elastic - sim->dissipated;
+                     m->fluctuating - m->elastic - sim->dissipated -
+                     sim->impact;
   value[MAX_SPEED] = m->max_speed;
   value[GRAIN_SPEED] = m->grain_speed;
   value[SLOW] = m->slow;
@@ -212,6 +217,7 @@ static void set_row(const struct four_state *sim,
   value[CONDUCTION_ITERATIONS] = sim->conduction.iterations;
   value[WALL_SECONDS] = model->wall_seconds;
   value[WORK_OF_CHANGES] = sim->changed;
+  value[IMPACT] = sim->impact;
 }
 
 static void measure(struct model *model, double value[],
@@ -241,7 +247,8 @@ static const struct scalar SCALARS[] = {
     {"initial_energy", SCALAR_REAL, AT(initial), -DBL_MAX, DBL_MAX},
     {"changed_energy", SCALAR_REAL, AT(changed), -DBL_MAX, DBL_MAX},
     {"energy", SCALAR_REAL, AT(energy), -DBL_MAX, DBL_MAX},
-    {"dissipated", SCALAR_REAL, AT(dissipated), -DBL_MAX, DBL_MAX}};
+    {"dissipated", SCALAR_REAL, AT(dissipated), -DBL_MAX, DBL_MAX},
+    {"impact", SCALAR_REAL, AT(impact), -DBL_MAX, DBL_MAX}};
 
 static const char *const STAGES[FOUR_STATE_NSTAGES] = {
     [FOUR_STATE_CLOSURES] = "closures",

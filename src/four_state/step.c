@@ -26,6 +26,7 @@
  * calm_vacuum            leaves without grains take the velocity of those that
  *                        have some around them
  * four_state_adapt       if grains have moved far enough
+ * Energy that forces take is booked as they act (work.h).
  *
  * Invariants between steps
  * 1. nu, u, T are valid on leaves; every stage fills what it reads.
@@ -42,6 +43,7 @@
 #include "talus/four_state/state.h"
 #include "talus/four_state/temperature.h"
 #include "talus/four_state/time_step.h"
+#include "talus/four_state/work.h"
 #include "talus/log.h"
 #include "talus/minmax.h"
 #include "talus/viscous.h"
@@ -56,8 +58,8 @@ enum { RETRIES = 12, PICARD = 2, MOST_NEWTON = 30 };
 /* R of granular_pressure.h is bounded by this times solver.tolerance_pressure.
  */
 #define PRESSURE_FACTOR 1e-4
-/* Grains may have this times the kinetic energy that is accounted for; those of
- * a collapse have 0.98 times as much at most. */
+/* Grains may have this times the kinetic energy that is accounted for, which is
+ * a bound: gravity alone makes sqrt(K) grow by sqrt(M/2) g dt at most. */
 #define BURST 1.05
 /* Slope of P where there is no pressure, Pa. */
 #define LEAST_SLOPE 1e-4
@@ -137,21 +139,6 @@ static void diffuse(struct four_state *sim, double dt, const double *mass,
   add_solve(&sim->viscous, &stats);
 }
 
-/* Return what friction and viscosity have taken from the grains, J/m (3D: J):
- * their force, mass u* - rhs, times u*. What implicit steps lose besides,
- * mass/2 |u* - rhs/mass|^2, counts as numerical. */
-static double viscous_loss(const struct four_state *sim, const double *mass,
-                           double *const rhs[DIM], double *const u[DIM]) {
-  const struct mesh *mesh = sim->grid.mesh;
-  double sum = 0;
-  for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      sum += (rhs[e][i] - mass[i] * u[e][i]) * u[e][i] * mesh_volume(mesh, i);
-    }
-  }
-  return mesh_sum(mesh, sum);
-}
-
 /* Give leaves without grains the velocity of the grains around them, for
  * differences across the surface, and fill u. nu is filled. */
 static void calm_vacuum(struct four_state *sim) {
@@ -188,6 +175,8 @@ static void predict(struct four_state *sim, double dt, double *a_f) {
   four_state_acceleration(sim, a_f, a);
   field_fill_many(mesh, DIM, sim->u);
   four_state_viscosity(sim, u);
+  sim->impact +=
+      0.5 * dt * four_state_fall(sim, u) - four_state_work(sim, dt, NULL, a, u);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     mass[i] = rho * max2(sim->nu->v[i], LEAST_NU);
     for (int e = 0; e < DIM; e++) {
@@ -200,7 +189,7 @@ static void predict(struct four_state *sim, double dt, double *a_f) {
   for (int k = 0; k < PICARD; k++) {
     if (k > 0) four_state_viscosity(sim, u);
     diffuse(sim, dt, mass, rhs, u);
-    if (k == PICARD - 1) sim->dissipated += viscous_loss(sim, mass, rhs, u);
+    if (k == PICARD - 1) four_state_book_friction(sim, mass, rhs, u);
     calm_vacuum(sim);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       if (four_state_has_grains(sim, i)) continue;
@@ -220,7 +209,7 @@ static void predict(struct four_state *sim, double dt, double *a_f) {
 static void press(struct four_state *sim, double dt, double *a_f,
                   double *nu_new) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *u[DIM], *a[DIM], *u_f = sim->u_f->v;
+  double *u[DIM], *a[2 * DIM], *u_f = sim->u_f->v;
   field_arrays(sim->u, u);
   double *p = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   field_fill_many(mesh, DIM, sim->u);
@@ -230,16 +219,22 @@ static void press(struct four_state *sim, double dt, double *a_f,
   sim->pressure =
       granular_pressure_solve(&by, dt, u_f, p, nu_new, sim->flux->v);
   scratch_give(&sim->scratch, "pressure");
+  scratch_take(&sim->scratch, FIELD_CELL, "accelerations", 2 * DIM, a);
+  four_state_face_acceleration(sim, sim->p->v, a_f);
+  four_state_acceleration(sim, a_f, a + DIM);
   memcpy(sim->p->v, p, (size_t)mesh->ncells * sizeof *p);
-  scratch_give(&sim->scratch, __func__);
-  scratch_take(&sim->scratch, FIELD_CELL, "acceleration", DIM, a);
   four_state_face_acceleration(sim, sim->p->v, a_f);
   four_state_acceleration(sim, a_f, a);
+  sim->impact += four_state_stored(sim, sim->nu->v) -
+                 four_state_stored(sim, nu_new) -
+                 four_state_work(sim, dt, a + DIM, a, u);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] += dt * a[e][i];
     mesh_touch(mesh, u[e]);
   }
-  scratch_give(&sim->scratch, "acceleration");
+  sim->impact += 0.5 * dt * four_state_fall(sim, u);
+  scratch_give(&sim->scratch, "accelerations");
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* Set keep [>= nleaves + nghosts] to how much of the slope of q counts in what
@@ -389,7 +384,7 @@ static bool has_failed(const struct four_state *sim, double given,
 /* Take a step of at most dt_max; returns its dt, or 0 with the state of before.
  */
 static double find_step(struct four_state *sim, double dt_max) {
-  const double dissipated = sim->dissipated;
+  const double dissipated = sim->dissipated, impact = sim->impact;
   const struct four_state_store before = four_state_store(sim);
   fields_save(&sim->grid.fields, sim->grid.mesh);
   for (int attempt = 0; attempt <= RETRIES; attempt++) {
@@ -397,7 +392,7 @@ static double find_step(struct four_state *sim, double dt_max) {
     const double given = advance_state(sim, dt);
     if (!has_failed(sim, given, burst(sim, dt, &before))) return dt;
     fields_restore(&sim->grid.fields, sim->grid.mesh);
-    sim->dissipated = dissipated;
+    sim->dissipated = dissipated, sim->impact = impact;
     dt_max = RETRY_FACTOR * dt;
     log_info("step %lld: dt %.3g is repeated with at most %.3g",
              (long long)sim->model.step, dt, dt_max);

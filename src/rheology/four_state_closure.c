@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "roots.h"
@@ -16,6 +17,9 @@ static const double POLE_MARGIN = 1e-3;
 /* Pieces of the table: a hundred where p_D, a power of nu_0 - nu, is steepest.
  */
 enum { PIECES = 1 << 16 };
+/* Curves of the table, each with its slope: max(p_K, p_D)/(rho_d T), p_ES,
+ * p_K/(rho_d T), elastic energy. */
+enum { HOT = 0, PACKING = 2, KINETIC = 4, ELASTIC = 6 };
 
 /* A function of nu with its derivative. */
 struct slope {
@@ -100,15 +104,50 @@ static struct slope packing_of(const struct four_state_closure *c, double nu) {
 
 /* Give max(p_K, p_D)/(rho_d T), and p_K/(rho_d T) alone. */
 static struct slope hot_of(const struct four_state_closure *c, double nu,
-                           double *kinetic_part) {
+                           struct slope *kinetic_part) {
   const double end = c->param[LEE_HUANG_NU_0];
   const struct kinetic k = kinetic_at(c->param, fmin(nu, end));
   const struct slope p_K =
       nu > end ? beyond(c->p_K, end, nu) : kinetic_ratio(nu, &k);
   const struct slope p_D = nu > c->nu_D ? beyond(c->p_D, c->nu_D, nu)
                                         : dilatancy_ratio(c->param, nu, &k);
-  *kinetic_part = p_K.value;
+  *kinetic_part = p_K;
   return p_D.value > p_K.value ? p_D : p_K;
+}
+
+/* Return the integral of p_ES/nu^2 from nu_min. */
+static double elastic_of(const struct four_state_closure *c, double nu) {
+  /* Gauss-Legendre of five points over [nu_min, nu]: 1e-6 up to nu_max */
+  static const double x[] = {0, 0.5384693101056831, 0.9061798459386640};
+  static const double w[] = {0.5688888888888889, 0.4786286704993665,
+                             0.2369268850561891};
+  const double low = c->param[LEE_HUANG_NU_MIN];
+  const double half = 0.5 * (nu - low), centre = 0.5 * (nu + low);
+  double sum = 0;
+  if (half <= 0) return 0;
+  for (int k = -2; k <= 2; k++) {
+    const int j = k < 0 ? -k : k;
+    const double at = centre + (k < 0 ? -half : half) * x[j];
+    sum += w[j] * packing_of(c, at).value / (at * at);
+  }
+  return half * sum;
+}
+
+static void put(double node[2], struct slope of) {
+  node[0] = of.value, node[1] = of.slope;
+}
+
+static void make_table(struct four_state_closure *c) {
+  c->table = mem_alloc(PIECES + 1, sizeof *c->table);
+  for (int k = 0; k <= PIECES; k++) {
+    const double nu = k / c->per_nu;
+    struct slope p_K;
+    const struct slope hot = hot_of(c, nu, &p_K), p_ES = packing_of(c, nu);
+    const struct slope elastic = {elastic_of(c, nu),
+                                  nu > 0 ? p_ES.value / (nu * nu) : 0};
+    put(c->table[k] + HOT, hot), put(c->table[k] + KINETIC, p_K);
+    put(c->table[k] + PACKING, p_ES), put(c->table[k] + ELASTIC, elastic);
+  }
 }
 
 const char *four_state_closure_init(struct four_state_closure *c,
@@ -129,15 +168,7 @@ const char *four_state_closure_init(struct four_state_closure *c,
   c->p_K[0] = p_K.value, c->p_K[1] = p_K.slope;
   c->p_ES[0] = p_ES.value, c->p_ES[1] = p_ES.slope;
   c->per_nu = PIECES / param[LEE_HUANG_NU_MAX];
-  c->table = mem_alloc(PIECES + 1, sizeof *c->table);
-  for (int k = 0; k <= PIECES; k++) {
-    const double nu = k / c->per_nu;
-    double unused;
-    const struct slope hot = hot_of(c, nu, &unused);
-    const struct slope rest = packing_of(c, nu);
-    c->table[k][0] = hot.value, c->table[k][1] = hot.slope;
-    c->table[k][2] = rest.value, c->table[k][3] = rest.slope;
-  }
+  make_table(c);
   return NULL;
 }
 
@@ -156,19 +187,28 @@ static inline struct slope cubic(const double here[2], const double next[2],
                         per * (m0 + t * (2 * c2 + 3 * t * c3))};
 }
 
+/* Look one curve of the table up; nu < nu_max. */
+static inline struct slope look_up(const struct four_state_closure *c,
+                                   double nu, int curve) {
+  const double at = nu * c->per_nu;
+  const int k = (int)at;
+  return cubic(c->table[k] + curve, c->table[k + 1] + curve, at - k, c->per_nu);
+}
+
+static inline bool is_in_table(const struct four_state_closure *c, double nu) {
+  return nu * c->per_nu < PIECES;
+}
+
 double four_state_pressure(const struct four_state_closure *c, double nu,
                            double T, double *slope) {
-  const double at = nu * c->per_nu, rho_T = c->param[LEE_HUANG_RHO_D] * T;
+  const double rho_T = c->param[LEE_HUANG_RHO_D] * T;
   struct slope hot = {0, 0}, p_ES = {0, 0};
-  if (at < PIECES) {
-    const int k = (int)at;
-    const double(*node)[4] = (const double(*)[4])(c->table + k);
-    if (T > 0) hot = cubic(node[0], node[1], at - k, c->per_nu);
-    if (nu > c->param[LEE_HUANG_NU_MIN])
-      p_ES = cubic(node[0] + 2, node[1] + 2, at - k, c->per_nu);
+  if (is_in_table(c, nu)) {
+    if (T > 0) hot = look_up(c, nu, HOT);
+    if (nu > c->param[LEE_HUANG_NU_MIN]) p_ES = look_up(c, nu, PACKING);
   } else {
-    double p_K;
-    hot = hot_of(c, nu, &p_K);
+    struct slope unused;
+    hot = hot_of(c, nu, &unused);
     p_ES = packing_of(c, nu);
   }
   if (slope != NULL) *slope = p_ES.slope + rho_T * hot.slope;
@@ -177,17 +217,24 @@ double four_state_pressure(const struct four_state_closure *c, double nu,
 
 double four_state_kinetic_pressure(const struct four_state_closure *c,
                                    double nu, double T) {
-  double p_K;
-  hot_of(c, nu, &p_K);
-  return c->param[LEE_HUANG_RHO_D] * T * p_K;
+  struct slope p_K;
+  if (is_in_table(c, nu))
+    p_K = look_up(c, nu, KINETIC);
+  else
+    hot_of(c, nu, &p_K);
+  return c->param[LEE_HUANG_RHO_D] * T * p_K.value;
 }
 
 double four_state_contact_pressure(const struct four_state_closure *c,
                                    double nu, double T) {
-  double p_K;
-  const struct slope hot = hot_of(c, nu, &p_K);
-  return packing_of(c, nu).value +
-         c->param[LEE_HUANG_RHO_D] * T * (hot.value - p_K);
+  return fmax(four_state_pressure(c, nu, T, NULL) -
+                  four_state_kinetic_pressure(c, nu, T),
+              0);
+}
+
+double four_state_elastic(const struct four_state_closure *c, double nu) {
+  if (nu <= c->param[LEE_HUANG_NU_MIN]) return 0;
+  return is_in_table(c, nu) ? look_up(c, nu, ELASTIC).value : elastic_of(c, nu);
 }
 
 /* Holds what p(nu) is taken with, for root_of_rising. */
@@ -211,23 +258,6 @@ double four_state_packed(const struct four_state_closure *c, double p) {
   const double low = c->param[LEE_HUANG_NU_MIN];
   if (!(p > 0)) return low;
   return four_state_solid_fraction(c, p, 0, low, c->param[LEE_HUANG_NU_0]);
-}
-
-double four_state_elastic(const struct four_state_closure *c, double nu) {
-  /* Gauss-Legendre of five points over [nu_min, nu]: 1e-6 up to nu_max */
-  static const double x[] = {0, 0.5384693101056831, 0.9061798459386640};
-  static const double w[] = {0.5688888888888889, 0.4786286704993665,
-                             0.2369268850561891};
-  const double low = c->param[LEE_HUANG_NU_MIN];
-  const double half = 0.5 * (nu - low), centre = 0.5 * (nu + low);
-  double sum = 0;
-  if (half <= 0) return 0;
-  for (int k = -2; k <= 2; k++) {
-    const int j = k < 0 ? -k : k;
-    const double at = centre + (k < 0 ? -half : half) * x[j];
-    sum += w[j] * packing_of(c, at).value / (at * at);
-  }
-  return half * sum;
 }
 
 struct four_state_numbers four_state_numbers(const struct four_state_closure *c,

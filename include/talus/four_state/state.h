@@ -65,7 +65,8 @@ struct four_state {
   double initial;    /* energy at t = 0, J/m (3D: J) */
   double changed;    /* that restarts with other conditions have added */
   double energy;     /* when the checkpoint was written */
-  double dissipated; /* since then, by friction and collisions */
+  double dissipated; /* since the start, by friction and collisions */
+  double impact;     /* work against pressure that is not stored (work.h) */
 };
 
 /* Make a state of zeros on a forest, which it takes over. Collective. */
