@@ -22,123 +22,26 @@
  * gradient of the gas (skin.h) it was 4.3e-2, 2.5e-2, 2.3e-2. "exact": with a
  * yield stress of 1e-9 rho U^2, so that grains and gas are mixed as an exact
  * yield does it (two_phase/yield.h). */
-#include "../mesh/transport.h"
-#include "report.h"
-#include "runs.h"
-
-static const double kBox = 4, kTravel = 3;
-static struct body start = {{1, 2}, 0.5};
-
-static double speed_at_start(void *context, const double x[3]) {
-  return cube(context, x) > 0;
-}
-
-static struct params dense_square(double ratio, double eta_gas, bool exact) {
-  struct params params = periodic_params(7);
-  params.size = kBox;
-  params.single_phase = false;
-  params.pressure_level_given = true;
-  params.shape = (struct function){cube, &start};
-  params.velocity[0] = (struct function){speed_at_start, &start};
-  params.grains.rheology = newtonian(1e-2);
-  if (exact) {
-    rheology_set(&params.grains.rheology, "cohesion", 1e-9);
-    rheology_set_regularisation(&params.grains.rheology, "exact");
-  }
-  params.gas = (struct phase){1 / ratio, newtonian(eta_gas)};
-  params.tolerance_pressure = params.tolerance_viscous = 1e-6;
-  return params;
-}
-
-/* Where the square is, as c says: half a step behind the velocity. */
-struct track {
-  double time, centre[2];
-};
-
-/* Find the centre of volume, found from the last one, as the box is periodic.
- */
-static void follow(const struct two_phase *sim, struct track *track) {
-  double shift[2] = {0}, volume = integral(sim->grid.mesh, sim->c->v);
-  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    for (int d = 0; d < 2; d++) {
-      const double from =
-          remainder(sim->grid.mesh->x[i][d] - track->centre[d], kBox);
-      shift[d] += sim->c->v[i] * mesh_volume(sim->grid.mesh, i) * from / volume;
-    }
-  }
-  for (int d = 0; d < 2; d++) track->centre[d] += shift[d];
-  track->time = sim->model.time - 0.5 * sim->model.dt;
-}
-
-/* Return the mean velocity of the grains along x. */
-static double mean_speed(const struct two_phase *sim) {
-  double sum = 0;
-  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    sum += sim->c->v[i] * mesh_volume(sim->grid.mesh, i) * sim->u[0]->v[i];
-  }
-  return sum / integral(sim->grid.mesh, sim->c->v);
-}
-
-/* Return the level set of the square at *context, periodic. */
-static double wrapped_square(void *context, const double x[3]) {
-  struct body body = *(const struct body *)context;
-  double y[3] = {0};
-  for (int d = 0; d < 2; d++) {
-    y[d] = body.centre[d] + remainder(x[d] - body.centre[d], kBox);
-  }
-  return cube(&body, y);
-}
-
-/* Return the part of the square's area that is not where it should be. */
-static double shape_error(struct two_phase *sim, const struct track *to) {
-  struct body body = start;
-  double *error = MEM_NEW(double, sim->grid.mesh->nleaves);
-  for (int d = 0; d < 2; d++) body.centre[d] = to->centre[d];
-  fill_shape(sim->grid.mesh, wrapped_square, &body, error);
-  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    error[i] = fabs(sim->c->v[i] - error[i]);
-  }
-  const double sum = integral(sim->grid.mesh, error);
-  mem_free(error);
-  return sum;
-}
-
-static void run_ratio(struct report *report, const char *grid, double ratio,
-                      double eta_gas, bool exact) {
-  const struct params params = dense_square(ratio, eta_gas, exact);
-  struct two_phase *sim = sim_start(&params);
-  struct track from, now = {0, {start.centre[0], start.centre[1]}};
-  bool good = true;
-  double speed = NAN, fastest = 0;
-  for (int k = 0; k < 2; k++) good = good && step_advance(sim, 1) == EXIT_DONE;
-  follow(sim, &now);
-  from = now;
-  speed = mean_speed(sim);
-  while (good && now.centre[0] - from.centre[0] < kTravel &&
-         sim->model.step < 2000) {
-    good = step_advance(sim, 1) == EXIT_DONE;
-    follow(sim, &now);
-    fastest = larger(fastest, largest(sim, sim->u));
-  }
-  const double mean = (now.centre[0] - from.centre[0]) / (now.time - from.time);
-  report_value(report, grid, "speed at step 2 / U", 7, speed);
-  report_at_most(report, grid, "|speed / at step 2 - 1|", 7,
-                 good ? fabs(mean / speed - 1) : NAN, 0.01);
-  report_at_most(report, grid, "mean |c - c0|", 7,
-                 good ? shape_error(sim, &now) : NAN,
-                 0.005 + 3.5 / ratio * kTravel * kTravel);
-  report_value(report, grid, "largest |u|", 7, fastest);
-  report_value(report, grid, "steps", 7, (double)sim->model.step);
-  two_phase_destroy(sim);
-}
+#include "dense_body.h"
 
 static void run(struct report *report) {
-  run_ratio(report, "density 1e3", 1e3, 1e-5, false);
-  run_ratio(report, "density 1e4 Re 100", 1e4, 1e-6, false);
-  run_ratio(report, "density 1e5 Re 100", 1e5, 1e-7, false);
-  run_ratio(report, "density 1e6", 1e6, 1e-5, false);
-  run_ratio(report, "density 1e3 exact", 1e3, 1e-5, true);
-  run_ratio(report, "density 1e6 exact", 1e6, 1e-5, true);
+  static const struct {
+    const char *grid;
+    double ratio, eta_gas;
+    bool exact;
+  } run[] = {{"density 1e3", 1e3, 1e-5, false},
+             {"density 1e4 Re 100", 1e4, 1e-6, false},
+             {"density 1e5 Re 100", 1e5, 1e-7, false},
+             {"density 1e6", 1e6, 1e-5, false},
+             {"density 1e3 exact", 1e3, 1e-5, true},
+             {"density 1e6 exact", 1e6, 1e-5, true}};
+  for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
+    dense_report(report, run[k].grid,
+                 &(struct dense_body){.ratio = run[k].ratio,
+                                      .eta_gas = run[k].eta_gas,
+                                      .exact = run[k].exact,
+                                      .level = 7});
+  }
 }
 
 const struct convergence_case dense_square_case = {

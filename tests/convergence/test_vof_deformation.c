@@ -36,9 +36,13 @@ static void run(struct report *report) {
                                     .end = kPeriod,
                                     .shape = ball,
                                     .context = &sphere};
-  double error[N];
-  carried_report(report, "uniform", &flow, FIRST, N, 1, NULL, error);
-  carried_report(report, "adapted", &flow, FIRST, N, 1, NULL, error);
+  double error[2][N];
+  carried_report(report, "uniform", &flow, FIRST, N, 1, NULL, error[0]);
+  carried_report(report, "adapted", &flow, FIRST, N, 1, NULL, error[1]);
+  for (int k = 0; k < N; k++) {
+    report_at_most(report, "adapted", "|error / uniform - 1|", FIRST + k,
+                   fabs(error[1][k] / error[0][k] - 1), 0.1);
+  }
 }
 
 const struct convergence_case vof_deformation_case = {
