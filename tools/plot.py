@@ -12,6 +12,10 @@ Writes into DIR (or --output):
   history.png       front, height, energies, cells against time
   film.gif          all snapshots (film.mp4 too where ffmpeg is installed)
 
+and of a run in 3D, whose film shows the surface of its heap,
+  plan.png          height over x and y at six times, with contours
+  heap.png          the surface of the grains in four snapshots (heap.py)
+
 Each tracer has its colour, the same in all of them.
 
 Outlines are laid over those of a reference (run_data.Reference) where the
@@ -26,6 +30,7 @@ import pathlib
 import shutil
 import sys
 
+import heap
 import run_data  # first: it says so if one of the next is missing
 from run_data import VELOCITY, label
 from sheet import (BLUE, EARTH, GRAINS, GREEN, GREY, INK, RED, SAND, RunWords,
@@ -386,8 +391,11 @@ def words_on_volume(change):
     return f"relative change of the volume of grains: {words}"
 
 
-def draw_length(ax, s, units):
-    ax.plot(s["time"], s["front"], color=EARTH, label="front")
+def draw_length(ax, s, run):
+    units = run.units
+    radius = run.solid or units.across == "$r$"
+    ax.plot(s["time"], s["front"], color=EARTH,
+            label="radius of the front" if radius else "front")
     ax.plot(s["time"], s["height"], color=BLUE, label="height")
     ax.set_title("front and height of the heap", loc="left")
     ax.set_ylabel(label("length", units.length))
@@ -436,7 +444,7 @@ def history_panels(s, run, change):
     """[function that draws on axes]: what the columns of the model allow, or
     else each of its columns but two."""
     panels = [
-        (("front", "height"), lambda ax: draw_length(ax, s, run.units)),
+        (("front", "height"), lambda ax: draw_length(ax, s, run)),
         (("kinetic", "potential", "dissipated", "numerical"),
          lambda ax: draw_energy(ax, s, run.parameters, change)),
         (("max_speed",), lambda ax: draw_speed(ax, s, run.units)),
@@ -476,6 +484,51 @@ def plot_history(options, run):
     return save(fig, options, "history.png")
 
 
+# Three dimensions
+
+
+def plot_plan(options, run):
+    if not run.solid:
+        return None
+    plans = run_data.choose(run_data.without_repeat(
+        heap.read_plans(options.directory)), 6)
+    if not plans or not any(p.height.any() for p in plans):
+        return None
+    plans = heap.around(plans)
+    norm = Normalize(0, max(p.height.max() for p in plans))
+    aspect = np.ptp(plans[0].x) / np.ptp(plans[0].y)
+    sheet = Sheet(run, len(plans), min(3, len(plans)), aspect, bars=True,
+                  note=label("height over the floor", run.units.length))
+    for ax, bar, plan in zip(sheet.axes, sheet.bars, plans):
+        heap.draw_plan(ax, plan, norm)
+        draw_bar(bar, norm, heap.HEIGHTS)
+        ax.set_title(f"$t$ = {plan.time:.3g} {run.units.time}", loc="left",
+                     pad=3, fontsize=9)
+    sheet.name_axes(run.units, "$y$")
+    return save(sheet.fig, options, "plan.png")
+
+
+def plot_heap(options, run):
+    paths = run_data.find_snapshots(options.directory) if run.solid else []
+    snapshots = [s for s in map(run_data.Snapshot, run_data.choose(paths, 4))
+                 if s.has_grains() and VELOCITY in s.fields]
+    if not snapshots:
+        return None
+    scene = heap.Scene(run, snapshots, options.renderer)
+    norm = Normalize(0, max(map(top_speed, snapshots)) or 1.0)
+    note = label("colour: speed", run.units.field("m/s"))
+    sheet = Sheet(run, len(snapshots), min(2, len(snapshots)),
+                  scene.view.aspect(), bars=True,
+                  note=", ".join(filter(None, [note, scene.note()])))
+    for ax, bar, snapshot in zip(sheet.axes, sheet.bars, snapshots):
+        scene.prepare(ax)
+        scene.draw(ax, snapshot, norm)
+        draw_bar(bar, norm, heap.MOVING)
+        ax.set_title(f"$t$ = {snapshot.time:.3g} {run.units.time}", loc="left",
+                     pad=3, fontsize=9)
+    return save(sheet.fig, options, "heap.png")
+
+
 # Film
 
 
@@ -498,52 +551,94 @@ def top_speed(snapshot):
     return float(np.quantile(values, 0.99)) if values.size else 0.0
 
 
+class SliceFilm:
+    """Frames of a plane: the speed of the grains, their surface, tracers."""
+
+    def __init__(self, run, snapshots):
+        self.run = run
+        window = film_window(snapshots)
+        self.spacing = min(raster_spacing(s, window, 600) for s in snapshots)
+        self.window = snap_window(window, snapshots[0], self.spacing)
+        self.norm = Normalize(0, max(map(top_speed, snapshots)) or 1.0)
+        aspect = (self.window[1] - self.window[0]) / (self.window[3]
+                                                      - self.window[2])
+        handles = {h.get_label(): h for snapshot in snapshots
+                   for h in legend_of_tracers(run, snapshot)}
+        self.sheet = Sheet(run, 1, 1, aspect, bars=True,
+                           handles=[*handles.values()])
+        self.ax = self.sheet.axes[0]
+        self.image = draw_grains(self.ax, snapshots[0], self.window,
+                                 self.spacing, speed(snapshots[0]), self.norm,
+                                 "viridis")
+        draw_bar(self.sheet.bars[0], self.norm, "viridis")
+        self.sheet.name_axes(run.units)
+
+    def draw(self, snapshot):
+        """Draw a frame; returns what must go before the next one."""
+        self.image.set_data(colours(snapshot, self.window, self.spacing,
+                                    speed(snapshot), self.norm, "viridis"))
+        return draw_contours(self.ax, snapshot, self.window, self.spacing,
+                             self.run)
+
+
+class SolidFilm:
+    """Frames of the surface of a heap in 3D."""
+
+    def __init__(self, run, snapshots, renderer):
+        self.scene = heap.Scene(run, snapshots, renderer)
+        self.norm = Normalize(0, max(map(top_speed, snapshots)) or 1.0)
+        self.sheet = Sheet(run, 1, 1, self.scene.view.aspect(), bars=True,
+                           note=self.scene.note())
+        self.ax = self.sheet.axes[0]
+        self.scene.prepare(self.ax)
+        draw_bar(self.sheet.bars[0], self.norm, heap.MOVING)
+
+    def draw(self, snapshot):
+        return self.scene.draw(self.ax, snapshot, self.norm)
+
+
+def film_of(options, run, snapshots):
+    if run.solid and all(s.has_grains() for s in snapshots):
+        return SolidFilm(run, snapshots, options.renderer)
+    return SliceFilm(run, [s.slice() for s in snapshots])
+
+
 def make_film(options, run):
     paths = run_data.choose(run_data.find_snapshots(options.directory),
                             options.max_frames)
     if len(paths) < 2:
         return []
-    snapshots = [run_data.Snapshot(p).slice() for p in paths]
+    snapshots = [run_data.Snapshot(p) for p in paths]
     if VELOCITY not in snapshots[0].fields:
         return []
-    window = film_window(snapshots)
-    spacing = min(raster_spacing(s, window, 600) for s in snapshots)
-    window = snap_window(window, snapshots[0], spacing)
-    norm = Normalize(0, max(map(top_speed, snapshots)) or 1.0)
-    cmap = "viridis"
-    aspect = (window[1] - window[0]) / (window[3] - window[2])
-    handles = {h.get_label(): h for snapshot in snapshots
-               for h in legend_of_tracers(run, snapshot)}
-    sheet = Sheet(run, 1, 1, aspect, bars=True, handles=[*handles.values()])
-    ax = sheet.axes[0]
-    image = draw_grains(ax, snapshots[0], window, spacing, speed(snapshots[0]),
-                        norm, cmap)
-    draw_bar(sheet.bars[0], norm, cmap)
-    sheet.name_axes(run.units)
-    text = ax.set_title("", loc="left")
+    film = film_of(options, run, snapshots)
+    text = film.ax.set_title("", loc="left")
+    writers = film_writers(options)
+    for name, writer in writers:
+        writer.setup(film.sheet.fig, options.output / name, dpi=90)
+    for snapshot in snapshots:
+        drawn = film.draw(snapshot)
+        text.set_text(f"$t$ = {snapshot.time:.2f} {run.units.time}, "
+                      + label("speed", run.units.field("m/s")))
+        for _, writer in writers:
+            writer.grab_frame()
+        for artist in drawn:
+            remove(artist)
+    for _, writer in writers:
+        writer.finish()
+    sign_gif(options.output / "film.gif")
+    plt.close(film.sheet.fig)
+    return [options.output / name for name, _ in writers]
 
+
+def film_writers(options):
+    """[(name, writer)]."""
     writers = [("film.gif", PillowWriter(fps=options.fps))]
     if shutil.which("ffmpeg"):
         even = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"]
         writers.append(("film.mp4", FFMpegWriter(
             fps=options.fps, metadata={"comment": SIGNATURE}, extra_args=even)))
-    for name, writer in writers:
-        writer.setup(sheet.fig, options.output / name, dpi=90)
-    for snapshot in snapshots:
-        image.set_data(colours(snapshot, window, spacing, speed(snapshot), norm,
-                               cmap))
-        contours = draw_contours(ax, snapshot, window, spacing, run)
-        text.set_text(f"$t$ = {snapshot.time:.2f} {run.units.time}, "
-                      + label("speed", run.units.field("m/s")))
-        for _, writer in writers:
-            writer.grab_frame()
-        for contour in contours:
-            remove(contour)
-    for _, writer in writers:
-        writer.finish()
-    sign_gif(options.output / "film.gif")
-    plt.close(sheet.fig)
-    return [options.output / name for name, _ in writers]
+    return writers
 
 
 def sign_gif(path):
@@ -575,6 +670,8 @@ def parse_options():
                         help="no lines of the grid in fields-final.png")
     parser.add_argument("--no-film", action="store_true",
                         help="pictures only")
+    parser.add_argument("--renderer", choices=("vtk", "matplotlib"),
+                        help="of surfaces in 3D, default vtk if it works")
     parser.add_argument("--fps", type=int, default=15,
                         help="frames a second of the film, default 15")
     parser.add_argument("--max-frames", type=int, default=150,
@@ -602,6 +699,8 @@ def main():
             plot_outlines(options, run, reference, scale),
             plot_fields(options, run),
             plot_history(options, run),
+            plot_plan(options, run),
+            plot_heap(options, run),
         ]
         if not options.no_film:
             written += make_film(options, run)

@@ -64,12 +64,12 @@ class Sheet:
         return self.fig.add_axes([x / full[0], y / full[1], w / full[0],
                                   h / full[1]])
 
-    def name_axes(self, units):
+    def name_axes(self, units, upwards="height"):
         """Numbers at every panel, names at the outer ones only."""
         for k, ax in enumerate(self.axes):
             ax.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
             if k % self.columns == 0:
-                ax.set_ylabel(label("height", units.length))
+                ax.set_ylabel(label(upwards, units.length))
             if k + self.columns >= len(self.axes):
                 ax.set_xlabel(label(units.across, units.length), labelpad=2)
             else:

@@ -91,10 +91,16 @@ static const char PLOT_HELP[] =
     "  fields-final.png   grid, speed, pressure, viscosity at the end\n"
     "  history.png        front, height, energies, cells against time\n"
     "  film.gif           a frame per snapshot (film.mp4 where ffmpeg is)\n"
+    "and of a run in 3D, the film too,\n"
+    "  plan.png           height over x and y, with contours\n"
+    "  heap.png           the surface of the grains\n"
     "\n"
     "It needs a Python 3 with h5py and matplotlib: the one that TALUS_PYTHON\n"
-    "names, else python3 on PATH, else /usr/bin/python3. `talus plot --help`\n"
-    "lists the options.\n";
+    "names, else python3 on PATH, else /usr/bin/python3. Surfaces are "
+    "rendered\n"
+    "by VTK where that has it and a display (python3-vtk9; xvfb-run talus "
+    "plot\n"
+    "DIR), else by matplotlib. `talus plot --help` lists the options.\n";
 
 static const char SERIES_HELP[] =
     "The output directory holds\n"
@@ -147,7 +153,8 @@ static const char SNAPSHOT_HELP[] =
     "with a checksum of every byte; parameters.csv, every parameter in use;\n"
     "run.log, what happened; run.lock, while a run goes on, who runs it. "
     "`talus plot DIR` adds outlines.png,\n"
-    "fields-final.png, history.png and film.gif (see `talus help plot`).\n";
+    "fields-final.png, history.png and film.gif, in 3D plan.png and heap.png\n"
+    "(see `talus help plot`).\n";
 
 static void help_usage(void) { fputs(USAGE, stdout); }
 static void help_run(void) { fputs(RUN_HELP, stdout); }

@@ -32,8 +32,9 @@ static const struct {
 enum { NFILES = sizeof FILES / sizeof *FILES };
 
 /* Pictures of tools/plot.py, and the words it signs them with. */
-static const char *const PICTURES[] = {"outlines.png", "fields-final.png",
-                                       "history.png", "film.gif", "film.mp4"};
+static const char *const PICTURES[] = {
+    "outlines.png", "fields-final.png", "history.png", "film.gif",
+    "film.mp4",     "plan.png",         "heap.png"};
 static const char SIGNATURE[] = "talus plot";
 
 enum { NPICTURES = sizeof PICTURES / sizeof *PICTURES };

@@ -40,6 +40,12 @@ with h5py.File(f"{directory}/{name}") as f:
     edge = x[cells].max(axis=1) - x[cells].min(axis=1)
     assert abs(np.prod(edge, axis=1).sum() / volume - 1) < 1e-12
     assert np.allclose(edge, edge[:, :1])
+    # corners of a quadrilateral or hexahedron in the order of XDMF and VTK
+    corner = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    corner += [(a, b, 1) for a, b, _ in corner]
+    low = x[cells].min(axis=1)[:, None]
+    exact = low + edge[:, None] * np.array(corner)[:2**dimension, :dimension]
+    assert np.allclose(x[cells], exact)
     assert f["velocity"].shape == (len(cells), 3)
     assert 0 < (f["fraction"] * np.prod(edge, axis=1)).sum() < volume
 PYTHON
@@ -56,6 +62,79 @@ for run in column box; do
     grep -qa "talus plot" $run/$name || { echo "$run/$name is not signed"; exit 1; }
   done
 done
+# In 3D the heap too, by VTK where it is installed and has a display.
+renderers=matplotlib
+"$python" -c 'import vtk
+w = vtk.vtkRenderWindow()
+w.SetOffScreenRendering(True)
+w.Render()' 2> /dev/null && renderers+=" vtk"
+for renderer in $renderers; do
+  timeout "$limit" "$build/talus" plot box --renderer $renderer -o by_$renderer \
+    > output
+  for name in plan.png heap.png film.gif; do
+    [ "$(wc -c < by_$renderer/$name)" -gt 5000 ] || {
+      echo "$renderer: $name is small"
+      exit 1
+    }
+    grep -qa "talus plot" by_$renderer/$name || {
+      echo "$renderer: $name is not signed"
+      exit 1
+    }
+  done
+done
+cat > heaps.py << 'PYTHON'
+import pathlib
+import sys
+import numpy as np
+sys.path.insert(0, sys.argv[1])
+import heap
+import run_data
+import surface
+from sheet import RunWords
+
+# the part z < 0.3 of a ball about a corner: a quarter of the whole one
+n = 40
+x = (np.arange(n) + 0.5) / n
+r = np.sqrt(x[:, None, None]**2 + x[:, None]**2 + x**2)
+c = np.clip(0.5 + n * (0.8 - r), 0, 1)[:, :, :12]
+raster = surface.Raster(np.zeros(3), 1 / n, c, r[:, :, :12])
+for axis in range(2):
+    raster = surface.mirror(raster, axis)
+found = surface.surface_of(raster)
+p = found.triangles
+exact = np.pi * (0.3 * 0.8**2 - 0.3**3 / 3)
+volume = np.einsum("ij,ij->i", p[:, 0], surface.normals(p)).sum() / 6
+assert abs(volume / exact - 1) < 0.02, volume / exact
+# closed: every edge is passed both ways
+_, corner = np.unique(np.rint(1e7 * p.reshape(-1, 3)), axis=0,
+                      return_inverse=True)
+corner = corner.reshape(-1, 3)
+edges = np.concatenate([corner[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+count = np.zeros((corner.max() + 1,) * 2, dtype=np.int16)
+np.add.at(count, tuple(edges.T), 1)
+assert (count == count.T).all()
+side = np.abs(p[..., 2].mean(axis=1) - 0.15) < 0.1
+assert abs(found.speed[side].mean() - 0.8) < 0.05, found.speed[side].mean()
+# what is seen of it: all in the picture
+view = heap.View([-1, 1, -1, 1], 0, 0.3)
+seen = view.project(p.reshape(-1, 3))
+assert (seen > view.low).all() and (seen < view.high).all()
+# a run: the plan holds the volume, the surface stands on the floor
+directory = pathlib.Path("box")
+plan = heap.read_plans(directory)[-1]
+volume = run_data.read_series(directory)["volume"][-1]
+spacing = plan.x[1] - plan.x[0]
+assert abs(plan.height.sum() * spacing**2 / volume - 1) < 1e-6
+snapshot = run_data.Snapshot(run_data.find_snapshots(directory)[-1])
+parts = surface.raster_of(snapshot, [False, False], 99)
+assert abs(parts.fraction.sum() * parts.spacing**3 / volume - 1) < 1e-3
+coarse = surface.raster_of(snapshot, [True, True], 4)
+assert coarse.spacing > parts.spacing
+assert abs(coarse.fraction.sum() * coarse.spacing**3 / volume / 4 - 1) < 1e-3
+run = RunWords(run_data.read_parameters(directory), directory)
+assert heap.Scene(run, [snapshot], "matplotlib").mirrors == [True, True]
+PYTHON
+"$python" heaps.py "$root/tools"
 # The pictures of a run that is replaced go with it.
 cp -r column replaced
 "$build/talus2d" run "$root/examples/column.lua" level=5 stop=0.1 -o replaced \

@@ -54,7 +54,7 @@ ends "my snapshot on two ranks" 2 "error: 'mine/$name' would be" 2 \
   $column -o mine
 rm -rf mine
 mkdir mine
-pictures="outlines.png fields-final.png history.png film.gif film.mp4"
+pictures="outlines.png fields-final.png history.png film.gif film.mp4 plan.png heap.png"
 for name in $pictures notes.txt; do echo "my own" > "mine/$name"; done
 ends "my pictures" 0 "'mine/film.gif' stays" 1 $column -o mine
 # signed, they are of talus plot and go with the run that they show
