@@ -32,7 +32,7 @@
 -- surface creeps on. In the experiment the dense column ends at 12.1 cm, after 30
 -- s, and the liquid at the floor is pressed by +144 Pa in the loose bed, and by
 -- -126 Pa in the dense one. The dense column is not right yet here: leaves near
--- the gate burst after 0.1 s (docs/notes/two_fluid.md).
+-- the gate burst after 0.17 s (docs/notes/two_fluid.md).
 --
 -- Try. dense=1 stop=30; alpha=0.57; closures of other codes: closure="ktgf".
 

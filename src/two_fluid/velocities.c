@@ -117,6 +117,7 @@ static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM + 1, cell);
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   double **rhs = cell, *mass = cell[DIM];
+  two_fluid_viscosities(sim);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double theta = share(sim, dt, sim->alpha->v[i], sim->drag->v[i]);
     mass[i] =
@@ -134,8 +135,10 @@ static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
     mesh_touch(mesh, u_s);
   }
   for (int k = 0; k < PICARD; k++) {
-    two_fluid_calm(sim);
-    two_fluid_viscosities(sim);
+    if (k > 0) {
+      two_fluid_calm(sim);
+      two_fluid_viscosities(sim);
+    }
     set_shared(sim, dt, face[0], face[1]);
     solve(sim, TWO_FLUID_S, dt, face[1], mass, rhs,
           sim->params->tolerance_viscous * sim->scale);
@@ -146,7 +149,33 @@ static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Solve for the fluid and leave u_f* in its velocity. */
+/* Leave in u_f its value without pressure and drag: u_f* of the header.
+ * shared, own [DIM][nleaves] are overwritten. */
+static void keep_fluid(struct two_fluid *sim, double dt,
+                       double *const shared[DIM], double *const own[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *eta[2], *u[TWO_FLUID_NPHASES][DIM];
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, eta);
+  set_shared(sim, dt, eta[0], eta[1]);
+  for (int32_t f = 0; f < mesh->nfaces_all; f++)
+    eta[1][f] = sim->eta_f[TWO_FLUID_F]->v[f] - eta[0][f];
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
+    const struct viscosity part = {.eta_f = eta[k],
+                                   .kappa_f = sim->kappa_f[TWO_FLUID_F]->v};
+    field_arrays(sim->u[k], u[k]);
+    viscous_force(mesh, &part, u[k], k == TWO_FLUID_S ? shared : own);
+  }
+  scratch_give(&sim->scratch, __func__);
+  for (int e = 0; e < DIM; e++) {
+    const double *before = sim->u[TWO_FLUID_F][e]->saved;
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      u[TWO_FLUID_F][e][i] = before[i] + dt * (shared[e][i] + own[e][i]) /
+                                             mass_of(sim, TWO_FLUID_F, i);
+    mesh_touch(mesh, u[TWO_FLUID_F][e]);
+  }
+}
+
+/* Solve for the fluid and leave u_f* in its velocity. b is overwritten. */
 static void solve_fluid(struct two_fluid *sim, double dt,
                         double *const b[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -165,14 +194,7 @@ static void solve_fluid(struct two_fluid *sim, double dt,
   least = -mesh_max(mesh, -least); /* what drag makes of an error in u_f */
   solve(sim, TWO_FLUID_F, dt, sim->eta_f[TWO_FLUID_F]->v, mass, rhs,
         least * sim->params->tolerance_viscous * sim->scale);
-  for (int e = 0; e < DIM; e++) {
-    double *u = sim->u[TWO_FLUID_F][e]->v;
-    const double *before = sim->u[TWO_FLUID_F][e]->saved;
-    for (int32_t i = 0; i < mesh->nleaves; i++)
-      u[i] = before[i] +
-             (mass[i] * u[i] - rhs[e][i]) / mass_of(sim, TWO_FLUID_F, i);
-    mesh_touch(mesh, u);
-  }
+  keep_fluid(sim, dt, rhs, b);
   scratch_give(&sim->scratch, __func__);
 }
 

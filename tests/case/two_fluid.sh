@@ -83,7 +83,7 @@ ends 2 "$talus" check key.lua
 says 'rho_d'
 
 # a run that makes energy is not passed over
-ends 0 "$talus" run "$root/examples/submarine.lua" dense=1 stop=0.16 -o dense \
+ends 0 "$talus" run "$root/examples/submarine.lua" dense=1 stop=0.2 -o dense \
   --quiet
 says 'J more than at the start.*they have burst'
 ends 0 "$talus" run "$root/examples/submarine.lua" stop=0.1 -o loose --quiet

@@ -10,13 +10,19 @@
  *       = m_s (u_s^n + dt b_s) + theta m_f (u_f^n + dt b_f)
  *   (m_f + k) u_f - dt div tau_f(u_f) = m_f (u_f^n + dt b_f) + k u_s
  *
- * The fluid that is eliminated from the first equation takes the part theta of
- * its own viscosity with it: where drag rules, both move as one, with the
- * viscosity of both; without that part tau_f would be explicit there. Kept are
- * the viscous forces alone,
+ * with tau_s of the shear rates of u^n and then of u_s. The fluid that is
+ * eliminated from the first equation takes the part theta of its own viscosity
+ * with it: where drag rules, both move as one, with the viscosity of both;
+ * without that part tau_f would be explicit there. Kept are the viscous forces
+ * alone,
  *
- *   u_s* = u_s^n + dt div tau_s/m_s,   u_f* = u_f^n + dt div tau_f/m_f,
+ *   u_s* = u_s^n + dt div tau_s/m_s
+ *   u_f* = u_f^n + dt div(theta tau_f(u_s) + (1 - theta) tau_f(u_f))/m_f
  *
+ * so that the sum of both has the forces that u_s was found with. Grains in a
+ * viscous liquid hold still by the difference of forces that are many times
+ * larger; with tau_f(u_f) alone in u_f* they flow below their slope of repose
+ * (tests/mesh/test_two_fluid_slope.c). Forces are those of stresses on faces,
  * so that the momentum of the sum is kept whatever theta is; drag, pressures
  * and weight act on faces. */
 #ifndef TALUS_TWO_FLUID_VELOCITIES_H
