@@ -445,7 +445,8 @@ static void solve_yield(struct two_phase *sim, double dt, int repetition,
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   double *r = face[0], *eta = face[1];
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, full);
-  for (int k = 0; k < MOST_SOLVES && mismatch > (k == 1 ? UNFIT : FIT); k++) {
+  int k = 0;
+  for (; k < MOST_SOLVES && mismatch > (k == 1 ? UNFIT : FIT); k++) {
     const struct solve_stats before = sim->viscous;
     const bool again = k > 0 || repetition > 0;
     yield_linearise(sim, again ? 0 : dt, r, eta, full);
@@ -459,6 +460,9 @@ static void solve_yield(struct two_phase *sim, double dt, int repetition,
     if (k > 0) add_solve(&sim->viscous, &before);
   }
   scratch_give(&sim->scratch, __func__);
+  if (k == MOST_SOLVES && mismatch > FIT) {
+    yield_say_misfit(sim, k, mismatch, FIT, UNFIT);
+  }
 }
 
 /* Solve the viscous equation for u* and v, in repetition k. The guess is u + dt

@@ -2,8 +2,11 @@
 #include "talus/two_phase/yield.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "talus/error.h"
+#include "talus/log.h"
 #include "talus/minmax.h"
 #include "talus/two_phase/properties.h"
 #include "talus/two_phase/state.h"
@@ -389,6 +392,23 @@ double yield_advance(struct two_phase *sim, double dt, const double *r,
   for (int k = 0; k < 4; k++) sum[k] = mesh_sum(mesh, sum[k]);
   const double most = sum[1] * sum[3];
   return most > 0 ? sum[0] * sum[2] / most : 0;
+}
+
+void yield_say_misfit(struct two_phase *sim, int solves, double mismatch,
+                      double want, double bad) {
+  char line[512];
+  log_info(
+      "step %lld: %d solves leave a mismatch of stress and load of %.3g, "
+      "wanted is %g",
+      (long long)sim->model.step, solves, mismatch, want);
+  if (!(mismatch > bad) || sim->yield.misfits++ > 0 || base_rank() != 0) return;
+  snprintf(line, sizeof line,
+           "step %lld: %d solves leave a mismatch of stress and load of %.3g; "
+           "above %g grains that the yield stress holds may move, and others "
+           "lag: take a smaller solver.dt_max (said once; run.log has all)",
+           (long long)sim->model.step, solves, mismatch, bad);
+  fprintf(stderr, "talus: warning: %s\n", line);
+  log_info("warning: %s", line);
 }
 
 bool yield_is_reached(const struct yield *yield, int d, int32_t f) {

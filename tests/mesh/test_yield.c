@@ -148,6 +148,34 @@ START_TEST(a_heap_rests_under_gas) {
 }
 END_TEST
 
+/* Repetitions of a step, whose stress starts from that of the last one, leave a
+ * heap at rest. */
+START_TEST(a_heap_rests_in_repeated_steps) {
+  struct params p = heap_params(false);
+  p.picard = 1;
+  struct two_phase *sim = sim_start(&p);
+  const bool done = run_to(sim, 2);
+  const double speed = fastest(sim, 0.01);
+  two_phase_destroy(sim);
+  ck_assert(done);
+  ck_assert_msg(speed < 1e-9, "%g", speed);
+}
+END_TEST
+
+/* Misfits are told to the user where they are bad, and counted. */
+START_TEST(a_bad_misfit_is_told_once) {
+  struct params p = heap_params(false);
+  struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
+  yield_say_misfit(sim, 8, 0.01, 0.001, 0.02);
+  const int fair = sim->yield.misfits;
+  yield_say_misfit(sim, 8, 0.03, 0.001, 0.02);
+  const int bad = sim->yield.misfits;
+  two_phase_destroy(sim);
+  ck_assert_int_eq(fair, 0);
+  ck_assert_int_eq(bad, 1);
+}
+END_TEST
+
 /* A heap at 0.95 of its slope of repose is at its yield stress below the crest,
  * which sank at 2e-5 while grains felt what the projection alone does. Then it
  * falls on, with the currents of the gas. */
@@ -498,6 +526,8 @@ Suite *yield_suite(void) {
   tcase_add_loop_test(tcase, a_layer_stops_when_it_should, 0, 2);
   tcase_add_loop_test(tcase, a_layer_rests_up_to_its_angle_of_repose, 0, 2);
   tcase_add_loop_test(tcase, a_heap_rests_under_gas, 0, 2);
+  tcase_add_test(tcase, a_heap_rests_in_repeated_steps);
+  tcase_add_test(tcase, a_bad_misfit_is_told_once);
   tcase_add_loop_test(tcase, a_heap_mends_its_stress, 0, 3);
   if (DIM == 2) tcase_add_test(tcase, a_crest_near_repose_does_not_sink);
   tcase_add_test(tcase, closures_that_thin_start_from_rest);

@@ -65,6 +65,7 @@ struct yield {
   struct field *shear; /* sqrt(2 D:D) of u^n on faces, 1/s */
   struct field *state; /* yield_state of snapshots, on demand */
   double gamma_r;      /* 1/s */
+  int misfits;         /* steps whose solves ended above the bad mismatch */
 };
 
 /* Set eta_f, tau_y and gamma_r from the velocity, which is filled, and p. */
@@ -84,5 +85,9 @@ void yield_find_state(struct two_phase *sim, double *state);
  * the mismatch, 0 of a flow that goes on. Collective. */
 double yield_advance(struct two_phase *sim, double dt, const double *r,
                      const double *eta, double *const u[DIM], bool again);
+/* Say in run.log that a step ended with a mismatch above what is wanted, and
+ * once in a run, to the user, that one did above `bad`. */
+void yield_say_misfit(struct two_phase *sim, int solves, double mismatch,
+                      double want, double bad);
 
 #endif
