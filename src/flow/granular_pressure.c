@@ -47,18 +47,6 @@ double granular_donor(const struct mesh *mesh, int32_t f, double dt, double u_f,
   return value + (side ? -half : half) * slope[leaf];
 }
 
-/* Return the solid fraction that passes a face: that of the donor, not below 0
- * and at most twice that of the leaf where the donor is a child of a coarse
- * one. */
-static double passing(const struct granular_pressure *by, int d, int32_t f,
-                      double dt, double u_f) {
-  const struct mesh *mesh = by->mesh;
-  const int32_t leaf = mesh->face_leaf[f][u_f > 0 ? 0 : 1];
-  const double nu = granular_donor(mesh, f, dt, u_f, by->nu_old, by->slope[d]);
-  if (leaf < 0) return nu;
-  return min2(max2(nu, 0), 2 * by->nu_old[leaf]);
-}
-
 /* Reduce the fluxes out of leaves that would give away more than MOST_GIVEN of
  * their grains, as thin ones may beside fast ones. */
 static void limit_fluxes(const struct granular_pressure *by, double dt,
@@ -125,8 +113,9 @@ static void set_alpha(const struct granular_pressure *by, double dt,
   const struct mesh *mesh = by->mesh;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double nu =
-          u_f[f] != 0 ? flux[f] / u_f[f] : passing(by, d, f, dt, 0);
+      const double nu = u_f[f] != 0 ? flux[f] / u_f[f]
+                                    : granular_donor(mesh, f, dt, 0, by->nu_old,
+                                                     by->slope[d]);
       by->alpha[f] = dt * dt * max2(nu, 0) * by->mobility_f[f];
     }
   }
