@@ -56,15 +56,15 @@ static void find_shear(struct two_fluid *sim) {
   }
 }
 
-/* Return the shear rate of a leaf: the root mean square over its faces. */
+/* Return the shear rate of a leaf: the mean over its faces, which is exact
+ * where it grows linearly. */
 static double leaf_shear(const struct mesh *mesh, const double *shear_f,
                          int32_t i) {
   double sum = 0;
   for (int s = 0; s < NFACE; s++) {
-    const double gamma = shear_f[mesh->cell_face[i][s]];
-    sum += gamma * gamma;
+    sum += shear_f[mesh->cell_face[i][s]];
   }
-  return sqrt(sum / NFACE);
+  return sum / NFACE;
 }
 
 /* Return div u_s of a leaf within the grains; 0 beside leaves without. */
@@ -252,6 +252,26 @@ static double wall_pressure(const struct two_fluid *sim, int d, int32_t f) {
          0.5 * sim->alpha->v[i] * difference * max2(g, 0) * mesh->h[i];
 }
 
+/* Return what the shear rate gamma of face f adds to the pressure of its leaves
+ * by X, Pa, which have X of the shear rate of the last step. Without it stress
+ * would not depend on the shear rate that a solve is after, and all shear would
+ * gather where p_s is least (tests/convergence/test_two_fluid_shear.c). */
+static double sheared(const struct two_fluid *sim, int32_t f, double alpha,
+                      double gamma, double eta_fluid) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct two_fluid_closure *c = &sim->closure;
+  const bool side = mesh->face_patch[f] >= 0;
+  const int32_t a = side ? mesh->face_owner[f] : mesh->face_node[f][0];
+  const int32_t b = side ? mesh->face_owner[f] : mesh->face_node[f][1];
+  struct two_fluid_frozen with = {
+      .phi_p = 0.5 * (sim->phi_p->v[a] + sim->phi_p->v[b]),
+      .X = 0.5 * (sim->X->v[a] + sim->X->v[b])};
+  const double before = two_fluid_pressure(c, alpha, &with, NULL);
+  with.X = two_fluid_relaxed_shear(
+      c, with.X, two_fluid_shear(c, gamma, eta_fluid), alpha, gamma, sim->dt);
+  return two_fluid_pressure(c, alpha, &with, NULL) - before;
+}
+
 /* Set the viscosities of the grains at face f of axis d. */
 static void set_solid(struct two_fluid *sim, int d, int32_t f, double alpha,
                       double eta_fluid) {
@@ -269,9 +289,10 @@ static void set_solid(struct two_fluid *sim, int d, int32_t f, double alpha,
                        : 0.5 * (p_s[node[0]] + p_s[node[1]]);
   const double gamma = sim->shear_f[TWO_FLUID_S]->v[f];
   const double *C = sim->hardening->v;
-  const double more = 0.5 * (C[node[0]] + C[node[1]]) * (gamma * sim->dt);
+  const double more = 0.5 * (C[node[0]] + C[node[1]]) * (gamma * sim->dt) +
+                      sheared(sim, f, alpha, gamma, eta_fluid);
   const struct two_fluid_stress stress =
-      two_fluid_stress(&sim->closure, alpha, max2(p, 0) + more, gamma,
+      two_fluid_stress(&sim->closure, alpha, max2(p + more, 0), gamma,
                        eta_fluid, 0.5 * (Theta[node[0]] + Theta[node[1]]));
   *eta = two_fluid_capped(&stress, gamma, sim->keys->gamma_r, sim->eta_max);
   *kappa = stress.kappa;

@@ -19,9 +19,9 @@ void two_fluid_shear_leaves(struct two_fluid *sim);
 /* Set eta_f, kappa_f of both phases from p_s and the shear rates of velocities
  * that are filled. Friction has p_s as dilatancy will raise it over dt, p_s + C
  * gamma dt, else dense grains would shear far beyond the strain that makes them
- * hold before p_s is felt. Friction has p_s of both leaves of a face, and on
- * walls the weight of the grains that lie on the wall; faces to leaves without
- * grains have none. Collective. */
+ * hold before p_s is felt. Friction has p_s of both leaves of a face with X of
+ * the shear rate there, and on walls the weight of the grains that lie on the
+ * wall; faces to leaves without grains have none. Collective. */
 void two_fluid_viscosities(struct two_fluid *sim);
 /* Return P of leaf i at a solid fraction alpha, with the phi_p that shear will
  * have made of that of the leaf in dt: grains that are too dense for their
