@@ -11,8 +11,8 @@
 #include "talus/memory.h"
 #include "talus/minmax.h"
 
-/* Grains slower than this count as slow, m/s. */
-static const double SLOW = 0.01;
+/* Grains slower than this times sqrt(g d) count as slow. */
+static const double SLOW = 0.1;
 
 /* Sums over leaves. */
 enum {
@@ -34,6 +34,13 @@ static double speed_squared(const struct four_state *sim, int32_t i) {
   return sum;
 }
 
+static double slow_squared(const struct four_state *sim) {
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++)
+    g2 += sim->params->gravity[d] * sim->params->gravity[d];
+  return SLOW * SLOW * sqrt(g2) * sim->closure.param[LEE_HUANG_D];
+}
+
 static void add_leaf(const struct four_state *sim, int32_t i,
                      double sum[NSUMS]) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -48,7 +55,7 @@ static void add_leaf(const struct four_state *sim, int32_t i,
   }
   sum[ELASTIC] += grains * four_state_elastic(&sim->closure, nu);
   sum[SPEED2] += grains * u2;
-  if (u2 < SLOW * SLOW) sum[SLOW_VOLUME] += grains;
+  if (u2 < slow_squared(sim)) sum[SLOW_VOLUME] += grains;
 }
 
 static void sum_leaves(const struct four_state *sim, double sum[NSUMS]) {

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "talus/error.h"
@@ -23,6 +24,18 @@ static struct four_state *of(struct model *model) {
 static struct model *model_of(struct four_state *sim) {
   sim->model.kind = &four_state_model;
   return &sim->model;
+}
+
+/* Say how fast a slope creeps that should rest, at 99 % of eta_S: its grains
+ * count as solid up to that shear rate. */
+static void describe(const struct params *params, size_t size, char *text) {
+  const struct four_state_keys *keys = params->own;
+  const double gamma = 2 * log(100) / keys->param[LEE_HUANG_N];
+  snprintf(
+      text, size,
+      "friction is reached at a shear rate of 2 ln(100)/n = %.3g/s: slopes "
+      "that rest creep by up to that times their height",
+      gamma);
 }
 
 static struct model *start(const struct params *params,
@@ -158,7 +171,7 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [MAX_SPEED] = {"max_speed", COLUMN_SHORT, "m/s", "within the contour"},
     [GRAIN_SPEED] = {"grain_speed", COLUMN_SHORT, "m/s",
                      "root of the mean square over all grains"},
-    [SLOW] = {"slow", COLUMN_SHORT, "", "part of the mass below 1 cm/s"},
+    [SLOW] = {"slow", COLUMN_SHORT, "", "part of the mass below sqrt(g d)/10"},
     [MAX_NU] = {"max_nu", COLUMN_REAL, "", "largest solid fraction"},
     [MAX_PRESSURE] = {"max_pressure", COLUMN_SHORT, "Pa", "largest pressure"},
     [SOLID] = {"solid", COLUMN_SHORT, "", "part of the area within the contour"},
@@ -261,6 +274,7 @@ static const char *const STAGES[FOUR_STATE_NSTAGES] = {
 
 const struct model_kind four_state_model = {
     .keys = &four_state_model_keys,
+    .describe = describe,
     .start = start,
     .resume = resume,
     .renew = renew,

@@ -61,14 +61,17 @@ enum { RETRIES = 12, PICARD = 2, MOST_NEWTON = 30 };
 /* Grains may have this times the kinetic energy that is accounted for, which is
  * a bound: gravity alone makes sqrt(K) grow by sqrt(M/2) g dt at most. */
 #define BURST 1.05
-/* Slope of P where there is no pressure, Pa. */
-#define LEAST_SLOPE 1e-4
+/* Slope of P over K where there is no pressure. */
+#define LEAST_SLOPE 1e-12
 /* Solid fractions below this count as this in the viscous equation. */
 #define LEAST_NU 1e-6
 /* A stalled viscous solve passes within STALL_SLACK times its tolerance, or
- * below STALL_FLOOR, m/s. */
+ * below STALL_FLOOR of the speed that the tolerance refers to. */
 #define STALL_SLACK 10
-#define STALL_FLOOR 1e-12
+#define STALL_FLOOR 1e-10
+/* The first pass only serves the shear rate of the second, and is solved to
+ * this times the tolerance. */
+#define FIRST_PASS 10
 
 static double find_pressure(const void *context, int32_t i, double nu,
                             double *slope) {
@@ -93,7 +96,7 @@ struct granular_pressure four_state_material(struct four_state *sim,
       .nu_old = sim->nu->v,
       .p_old = sim->p->v,
       .rho = sim->weight->v,
-      .least_slope = LEAST_SLOPE,
+      .least_slope = LEAST_SLOPE * sim->closure.param[LEE_HUANG_K],
       .tolerance = PRESSURE_FACTOR * sim->params->tolerance_pressure,
       .max_newton = MOST_NEWTON,
       .max_iterations = sim->params->max_iterations};
@@ -117,26 +120,21 @@ static double speed_scale(const struct four_state *sim, double dt) {
   return mesh_max(sim->grid.mesh, most);
 }
 
-/* Add the solves of a step up: all iterations, the worst result. */
-static void add_solve(struct solve_stats *sum, const struct solve_stats *next) {
-  const int iterations = sum->iterations + next->iterations;
-  if (sum->iterations == 0 || next->residual_after > sum->residual_after)
-    *sum = *next;
-  sum->iterations = iterations;
-}
-
-/* Solve the viscous equation of mass [nleaves] and rhs; u: guess, solution. */
+/* Solve the viscous equation of mass [nleaves] and rhs to `slack` times the
+ * tolerance; u: guess, solution. Iterations are added up. */
 static void diffuse(struct four_state *sim, double dt, const double *mass,
-                    double *const rhs[DIM], double *const u[DIM]) {
+                    double *const rhs[DIM], double slack,
+                    double *const u[DIM]) {
   const struct bc *bc[DIM];
   const struct viscosity viscosity = {.eta_f = sim->eta_f->v,
                                       .kappa_f = sim->kappa_f->v};
   for (int e = 0; e < DIM; e++) bc[e] = sim->u[e]->bc;
-  const struct solve_stats stats =
-      viscous_solve(sim->grid.mesh, sim->grid.hierarchy, mass, &viscosity, dt,
-                    rhs, bc, sim->params->tolerance_viscous * sim->scale,
-                    sim->params->max_iterations, u);
-  add_solve(&sim->viscous, &stats);
+  const int before = sim->viscous.iterations;
+  sim->viscous = viscous_solve(
+      sim->grid.mesh, sim->grid.hierarchy, mass, &viscosity, dt, rhs, bc,
+      slack * sim->params->tolerance_viscous * sim->scale,
+      sim->params->max_iterations, u);
+  sim->viscous.iterations += before;
 }
 
 /* Give leaves without grains the velocity of the grains around them, for
@@ -188,7 +186,7 @@ static void predict(struct four_state *sim, double dt, double *a_f) {
   sim->viscous = (struct solve_stats){0};
   for (int k = 0; k < PICARD; k++) {
     if (k > 0) four_state_viscosity(sim, u);
-    diffuse(sim, dt, mass, rhs, u);
+    diffuse(sim, dt, mass, rhs, k < PICARD - 1 ? FIRST_PASS : 1, u);
     if (k == PICARD - 1) four_state_book_friction(sim, mass, rhs, u);
     calm_vacuum(sim);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -318,9 +316,11 @@ static double advance_state(struct four_state *sim, double dt) {
   return given;
 }
 
-static bool is_solved(const struct solve_stats *stats, double tolerance) {
-  return stats->status == SOLVE_CONVERGED ||
-         stats->residual_after <= max2(STALL_SLACK * tolerance, STALL_FLOOR);
+static bool is_solved(const struct four_state *sim) {
+  const double allowed =
+      max2(STALL_SLACK * sim->params->tolerance_viscous, STALL_FLOOR);
+  return sim->viscous.status == SOLVE_CONVERGED ||
+         sim->viscous.residual_after <= allowed * sim->scale;
 }
 
 /* Do walls or a given flow drive the grains? */
@@ -361,7 +361,7 @@ static bool has_failed(const struct four_state *sim, double given,
         "step %lld: pressure and mass do not fit by %.3g after %d Newton "
         "iterations",
         step, sim->pressure.residual, sim->pressure.newton);
-  } else if (!is_solved(&sim->viscous, tolerance)) {
+  } else if (!is_solved(sim)) {
     log_info(
         "step %lld: viscous solve stalled after %d iterations, residual "
         "%g, tolerance %g",

@@ -22,7 +22,7 @@ struct four_state_measures {
   double grain_speed; /* flux of grains over nu, root of the mean
                          square by mass, m/s */
   double max_nu, max_pressure;
-  double slow;            /* part of the mass below 1 cm/s */
+  double slow;            /* part of the mass below sqrt(g d)/10 */
   double part[4];         /* solid, quasi-static, dense, inertial: parts of
                              the area beyond the contour */
   struct outline outline; /* of solid volume over nu_start */
