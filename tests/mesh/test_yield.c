@@ -162,6 +162,36 @@ START_TEST(a_heap_rests_in_repeated_steps) {
 }
 END_TEST
 
+/* Return the level set of a cliff with its foot at x = 0.5 and of height
+ * *context. */
+static double cliff(void *context, const double x[3]) {
+  return fmin(0.5 - x[0], *(const double *)context - x[UP]);
+}
+
+/* A cliff with a cohesion k has the stress -rho g depth e_y e_y without
+ * yielding as long as rho g H/2 <= mu rho g H/2 + k: H = 2 k/(rho g (1 - mu)) =
+ * 0.323 stands. A wedge at 45 degrees + asin(mu)/2 slides at twice that. The
+ * gas of 1e-3 shakes grains at the edge (docs/notes/yield.md). */
+START_TEST(a_cliff_with_cohesion_stands) {
+  const double gas[] = {1e-6, 1e-3, 1e-3}, most[] = {1e-6, 3e-4, 1};
+  double height = _i < 2 ? 0.25 : 0.75;
+  struct params p = heap_params(false);
+  p.shape = (struct function){cliff, &height};
+  p.gas.density = gas[_i];
+  p.gas.rheology = newtonian(0.01 * gas[_i]);
+  p.grains.rheology = exact_closure("coulomb");
+  rheology_set(&p.grains.rheology, "mu_s", 0.38);
+  rheology_set(&p.grains.rheology, "cohesion", 0.1);
+  struct two_phase *sim = sim_start(&p);
+  const bool done = run_to(sim, _i < 2 ? 5 : 1);
+  const double speed = fastest(sim, 0.01);
+  two_phase_destroy(sim);
+  ck_assert(done);
+  ck_assert_msg(speed < most[_i], "%g", speed);
+  ck_assert_msg(_i < 2 || speed > 1e-2, "%g", speed);
+}
+END_TEST
+
 /* Misfits are told to the user where they are bad, and counted. */
 START_TEST(a_bad_misfit_is_told_once) {
   struct params p = heap_params(false);
@@ -532,6 +562,9 @@ Suite *yield_suite(void) {
   if (DIM == 2) tcase_add_test(tcase, a_crest_near_repose_does_not_sink);
   tcase_add_test(tcase, closures_that_thin_start_from_rest);
   tcase_add_test(tcase, the_stiffness_follows_the_faster_of_fall_and_flow);
+  suite_add_tcase(suite, tcase);
+  tcase = tcase_create("cliff");
+  tcase_add_loop_test(tcase, a_cliff_with_cohesion_stands, 0, 3);
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("surface");
   tcase_add_loop_test(tcase, faces_are_wet_as_far_as_grains_reach, 0, 2);
