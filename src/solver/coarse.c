@@ -2,6 +2,7 @@
 /* The coarsest level, the trees of the brick: conjugate gradients, scaled by
  * the diagonal. Components are not coupled here. */
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "levels.h"
@@ -14,13 +15,11 @@ static void apply(const struct hierarchy *h, int c, const double *p,
   for (int32_t i = 0; i < h->level[0].nowned; i++) {
     double sum = inverse[i] > 0 ? p[i] / inverse[i] : 0;
     for (int f = 0; f < NFACE; f++) {
-      const int twice = h->nparts > 1 && c == f >> 1 ? 2 : 1;
-      if (h->w[f][i] > 0) {
-        sum -= twice * (double)h->w[f][i] * p[h->neighbour[f][i]];
-      }
-      if (h->has_bulk && twice > 1) {
-        sum -= (double)h->bulk[f][i] * p[h->neighbour[f][i]];
-      }
+      if (h->wall[i] >> f & 1) continue; /* p has no images */
+      const bool normal = h->nparts > 1 && c == f >> 1;
+      double pull = (normal ? 2 : 1) * (double)h->w[f][i];
+      if (h->has_bulk && normal) pull += (double)h->bulk[f][i];
+      sum -= pull * p[h->neighbour[f][i]];
     }
     q[i] = sum;
   }
