@@ -14,7 +14,7 @@
 #include "talus/model.h"
 #include "talus/openings.h"
 #include "talus/outline.h"
-#include "talus/shapes.h"
+#include "talus/shape_memory.h"
 
 /* Rounds that put columns in balance, and what is left then, of nu. */
 enum { ROUNDS = 20, NEWTON = 8 };
@@ -35,13 +35,15 @@ static void fill_state(struct four_state *sim, const struct depths *depths,
   double (*fraction)(shape_level_set f, void *context, const double centre[DIM],
                      double h, int depth) =
       mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
+  struct shape_memory *memory =
+      shape_memory_new(params->shape.eval, params->shape.context);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double x[3] = {0};
     for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
     const int depth = params->level_max - mesh->level[i] + fineness;
     const double c = params->shape.eval
-                         ? fraction(params->shape.eval, params->shape.context,
-                                    mesh->x[i], mesh->h[i], depth)
+                         ? fraction(shape_memory_value, memory, mesh->x[i],
+                                    mesh->h[i], depth)
                          : 1;
     double nu = sim->keys->nu_start;
     if (depths && c > 0)
@@ -53,6 +55,7 @@ static void fill_state(struct four_state *sim, const struct depths *depths,
       sim->u[e]->v[i] = u->eval && c > 0 ? u->eval(u->context, x) : 0;
     }
   }
+  shape_memory_destroy(memory);
 }
 
 static void adapt_to_state(struct four_state *sim, const struct depths *depths,

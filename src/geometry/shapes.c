@@ -7,8 +7,9 @@
 #include "talus/minmax.h"
 #include "talus/ring.h"
 
-/* Halvings of a piece on which f is 0 all over. */
-enum { BLIND = 6 };
+/* Halvings of a piece on which f is 0 all over, and the last ones, which a
+ * piece that a plane cuts need not take. */
+enum { BLIND = 6, LAST = 2 };
 
 enum { NVERTEX = 1 << DIM, NLATTICE = DIM == 2 ? 9 : 27 };
 
@@ -65,22 +66,36 @@ static double slant(const struct shape *shape, const struct piece *p) {
   return shape->rings ? 0.5 * p->h / p->x[0] : 0;
 }
 
-/* Return the fraction of the smallest piece, which is not halved any more. */
-static double cut_piece(const struct shape *shape, const struct piece *p) {
-  double mean = 0., n[DIM], norm = 0., residual = 0.;
-  for (int v = 0; v < NVERTEX; v++) mean += p->vertex[v] / NVERTEX;
+/* Find minus the slope of f, out of the grains; returns how far the vertices
+ * are from the plane with that slope through the centre. */
+static double fit_plane(const struct piece *p, double n[DIM]) {
+  double residual = 0.;
   for (int d = 0; d < DIM; d++) {
-    n[d] = 0.; /* minus the slope of f: out of the grains */
+    n[d] = 0.;
     for (int v = 0; v < NVERTEX; v++)
       n[d] -= side(v, d) * p->vertex[v] * 2. / NVERTEX;
-    norm += fabs(n[d]);
   }
-  double alpha = (2. * p->centre + mean) / 3.; /* eq. (2) */
   for (int v = 0; v < NVERTEX; v++) {
     double linear = p->centre;
     for (int d = 0; d < DIM; d++) linear -= 0.5 * side(v, d) * n[d];
     residual = max2(residual, fabs(p->vertex[v] - linear));
   }
+  return residual;
+}
+
+/* Is f linear, up to round-off, as far as the piece knows it? */
+static bool is_plane(const struct piece *p, double change) {
+  double n[DIM];
+  return change > 0. && fit_plane(p, n) <= 1e-13 * (change + fabs(p->centre));
+}
+
+/* Return the fraction of a piece that is not halved any more. */
+static double cut_piece(const struct shape *shape, const struct piece *p) {
+  double mean = 0., n[DIM], norm = 0.;
+  const double residual = fit_plane(p, n);
+  for (int v = 0; v < NVERTEX; v++) mean += p->vertex[v] / NVERTEX;
+  for (int d = 0; d < DIM; d++) norm += fabs(n[d]);
+  double alpha = (2. * p->centre + mean) / 3.; /* eq. (2) */
   /* A corner of a box that lies on a vertex, up to round-off in x, must not be
    * taken for a slanted plane. A true plane is always cut. */
   double tolerance = 1e-9 * variation(p);
@@ -136,7 +151,9 @@ static double piece_fraction(const struct shape *shape, const struct piece *p,
   int sign = common_sign(p, 0.);
   if (sign && fabs(p->centre) > 1.5 * change) return sign > 0 ? 1. : 0.;
   blind = p->centre == 0 && change == 0 ? blind - 1 : BLIND;
-  if (depth <= 0 || blind < 0) return cut_piece(shape, p);
+  if (depth <= 0 || blind < 0 || (depth <= LAST && is_plane(p, change))) {
+    return cut_piece(shape, p);
+  }
   double lattice[NLATTICE], sum = 0.;
   fill_lattice(shape, p, lattice);
   for (int child = 0; child < NVERTEX; child++) {

@@ -118,6 +118,7 @@ static void stress(const struct mesh *mesh, const struct viscosity *viscosity,
                    double *const u[DIM], double *const tau[]) {
   const double *eta_f = viscosity->eta_f;
   const struct skin *skin = viscosity->skin;
+#pragma GCC unroll 3 /* so that d is known in the loop over faces */
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       face_stress(mesh, eta_f, u, tau, f, d);

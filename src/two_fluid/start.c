@@ -12,7 +12,7 @@
 #include "talus/model.h"
 #include "talus/openings.h"
 #include "talus/outline.h"
-#include "talus/shapes.h"
+#include "talus/shape_memory.h"
 #include "talus/two_fluid/state.h"
 #include "talus/two_fluid_grains.h"
 
@@ -64,14 +64,16 @@ static void fill_state(struct two_fluid *sim, const struct filling *by) {
   double (*fraction)(shape_level_set f, void *context, const double centre[DIM],
                      double h, int depth) =
       mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
+  struct shape_memory *memory =
+      shape_memory_new(params->shape.eval, params->shape.context);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double x[3] = {0};
     for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
     int depth = params->level_max - mesh->level[i] + by->fineness;
     if (depth > 6) depth = 6;
     const double c = params->shape.eval
-                         ? fraction(params->shape.eval, params->shape.context,
-                                    mesh->x[i], mesh->h[i], depth)
+                         ? fraction(shape_memory_value, memory, mesh->x[i],
+                                    mesh->h[i], depth)
                          : 1;
     fill_leaf(sim, by, i, x, c);
     for (int e = 0; e < DIM; e++) {
@@ -80,6 +82,7 @@ static void fill_state(struct two_fluid *sim, const struct filling *by) {
       for (int k = 0; k < TWO_FLUID_NPHASES; k++) sim->u[k][e]->v[i] = value;
     }
   }
+  shape_memory_destroy(memory);
 }
 
 static void adapt_to_state(struct two_fluid *sim, struct filling *by,

@@ -6,7 +6,7 @@
 #include "talus/minmax.h"
 #include "talus/model.h"
 #include "talus/openings.h"
-#include "talus/shapes.h"
+#include "talus/shape_memory.h"
 #include "talus/two_phase/state.h"
 #include "talus/two_phase/step.h"
 #include "talus/vof.h"
@@ -42,13 +42,15 @@ static void fill_shape(const struct beginning *beginning,
   double (*const fraction)(shape_level_set, void *, const double[DIM], double,
                            int) =
       mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
+  struct shape_memory *memory = shape_memory_new(shape->eval, shape->context);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     tell(beginning, "shapes", i);
     const int depth = sim->params->level_max - mesh->level[i] + (int)fineness;
-    field->v[i] = shape->eval ? fraction(shape->eval, shape->context,
-                                         mesh->x[i], mesh->h[i], depth)
+    field->v[i] = shape->eval ? fraction(shape_memory_value, memory, mesh->x[i],
+                                         mesh->h[i], depth)
                               : 1;
   }
+  shape_memory_destroy(memory);
 }
 
 /* Return the velocity of the mass of a leaf in which grains and gas may move

@@ -6,6 +6,7 @@
 #include "level_sets.h"
 #include "random.h"
 #include "talus/plane.h"
+#include "talus/shape_memory.h"
 #include "talus/shapes.h"
 
 Suite *shapes_suite(void);
@@ -237,6 +238,29 @@ START_TEST(shape_fraction_calls_the_level_set_sparingly) {
 }
 END_TEST
 
+/* Corners are asked for about once in place of 2^DIM times. */
+START_TEST(shape_memory_gives_the_same_with_fewer_calls) {
+  enum { N = DIM == 2 ? 64 : 16 };
+  const double h = 1. / N;
+  struct sphere sphere = {{0.4, 0.5, 0.6}, 0.3, 1, 0};
+  struct shape_memory *memory = shape_memory_new(sphere_value, &sphere);
+  long plain = 0, remembered = 0;
+  for (int i = 0, n = DIM == 2 ? N * N : N * N * N; i < n; i++) {
+    double x[DIM];
+    for (int d = 0, rest = i; d < DIM; d++, rest /= N) {
+      x[d] = (rest % N + 0.5) * h;
+    }
+    sphere.calls = 0;
+    const double exact = shape_fraction(sphere_value, &sphere, x, h, 1);
+    plain += sphere.calls, sphere.calls = 0;
+    ck_assert(exact == shape_fraction(shape_memory_value, memory, x, h, 1));
+    remembered += sphere.calls;
+  }
+  shape_memory_destroy(memory);
+  ck_assert_int_le(remembered, plain / 2);
+}
+END_TEST
+
 Suite *shapes_suite(void) {
   Suite *suite = suite_create("shapes");
   TCase *tcase = tcase_create("fraction");
@@ -253,6 +277,7 @@ Suite *shapes_suite(void) {
   tcase_add_test(tcase, shape_fraction_sees_a_sphere_smaller_than_the_cell);
   tcase_add_test(tcase, shape_fraction_finds_a_ball_in_a_large_cell);
   tcase_add_test(tcase, shape_fraction_calls_the_level_set_sparingly);
+  tcase_add_test(tcase, shape_memory_gives_the_same_with_fewer_calls);
   suite_add_tcase(suite, tcase);
   return suite;
 }
