@@ -27,12 +27,13 @@
 --
 -- Cost. Loose, 3 s, leaves of 2.5 mm: 510 steps, half a minute on one core.
 --
--- Expect. The loose front is at 17.5 cm after 0.64 s and at 21.5 cm after 2 s; in
+-- Expect. The loose front is at 17.5 cm after 0.64 s and at 21.6 cm after 2 s; in
 -- the experiment at 16.3 and 20.4 cm, and at 21.2 cm in the end, while here the
--- surface creeps on. In the experiment the dense column ends at 12.1 cm, after 30
--- s, and the liquid at the floor is pressed by +144 Pa in the loose bed, and by
--- -126 Pa in the dense one. The dense column is not right yet here: leaves near
--- the gate burst after 0.17 s (docs/notes/two_fluid.md).
+-- surface creeps on. The dense column, with planes in the leaves of its surface,
+-- is at 6.7 cm after 2 s, and at 9.0 cm after 10 s on level 3; in the experiment
+-- at 9.3 and 12.1 cm. The liquid at the floor is pressed by +144 Pa in the loose
+-- bed, and by -126 Pa in the dense one at 1.13 s, here by -268 Pa
+-- (docs/notes/two_fluid.md).
 --
 -- Try. dense=1 stop=30; alpha=0.57; closures of other codes: closure="ktgf".
 
@@ -41,6 +42,7 @@ local level = param("level", 4, "finest grid: 4 cm/2^level")
 local stop = param("stop", 5, "time of the end, s")
 local closure = param("closure", "critical_state", "closures of the grains")
 local height = param("height", dense == 1 and 0.042 or 0.048, "H, m")
+local surface = param("surface", dense == 1 and "planes" or "none", "of the bed")
 local alpha = param("alpha", dense == 1 and 0.60 or 0.55, "solid fraction")
 
 return {
@@ -53,7 +55,7 @@ return {
   grains = {
     shape = function(x, y) return math.min(0.06 - x, height - y) end,
     density = 2500, d = 0.225e-3,
-    start = "dense", alpha_start = alpha,
+    start = "dense", alpha_start = alpha, surface = surface,
   },
   fluid = { density = 1010, eta_0 = 0.012 },
   closure = closure,

@@ -38,6 +38,15 @@ struct granular_material {
                            double from, double guess);
 };
 
+/* Tells what passes faces where a surface cuts leaves. */
+struct granular_surface {
+  const void *context;
+  /* Return nu of what passes face f of axis d with u_f over dt; otherwise:
+   * what a leaf without a surface would let through. */
+  double (*passing)(const void *context, int d, int32_t f, double dt,
+                    double u_f, double otherwise);
+};
+
 struct granular_pressure {
   const struct mesh *mesh;
   struct hierarchy *hierarchy;
@@ -51,9 +60,10 @@ struct granular_pressure {
   double least_slope;       /* of P that is taken for P', Pa, > 0 */
   double tolerance;         /* on max |R| */
   int max_newton, max_iterations;
-  double *slope[DIM];          /* [>= nleaves + nghosts] scratch */
-  double *change, *mass, *rhs; /* [ncells] scratch */
-  double *u_start, *alpha;     /* [nfaces_all] scratch */
+  const struct granular_surface *surface; /* NULL: none */
+  double *slope[DIM];                     /* [>= nleaves + nghosts] scratch */
+  double *change, *mass, *rhs;            /* [ncells] scratch */
+  double *u_start, *alpha;                /* [nfaces_all] scratch */
 };
 
 /* Take the scratch of `by` from a pool, for `taker` to give back. */

@@ -52,6 +52,13 @@ void vof_plane(const struct mesh *mesh, const double *c, int32_t leaf,
 double vof_part(const struct mesh *mesh, int32_t leaf, const double n[DIM],
                 double alpha, const double lo[DIM], const double hi[DIM]);
 
+/* Return the part of the volume swept through face f of axis d, `swept` edges
+ * of it deep, that the plane of its leaf `upwind` fills, 0 lower, 1 upper. The
+ * leaf may be twice as large as the face: then the face's part of it is one of
+ * its children. */
+double vof_swept(const struct mesh *mesh, int d, int32_t face, int upwind,
+                 double swept, double *const normal[DIM], const double *alpha);
+
 /* Find the fluxes F of c through the faces of axis d; flux [nfaces_all] is
  * valid on all of them afterwards. u_f [nfaces_all], m/s; c filled. open
  * [MESH_MAX_PATCHES]: patches through which only gas flows in, for the grains

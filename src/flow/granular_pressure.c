@@ -47,6 +47,15 @@ double granular_donor(const struct mesh *mesh, int32_t f, double dt, double u_f,
   return value + (side ? -half : half) * slope[leaf];
 }
 
+/* Return the solid fraction of the donor at a face. */
+static double donor(const struct granular_pressure *by, int d, int32_t f,
+                    double dt, double u_f) {
+  const double nu =
+      granular_donor(by->mesh, f, dt, u_f, by->nu_old, by->slope[d]);
+  if (by->surface == NULL) return nu;
+  return by->surface->passing(by->surface->context, d, f, dt, u_f, nu);
+}
+
 /* Reduce the fluxes out of leaves that would give away more than MOST_GIVEN of
  * their grains, as thin ones may beside fast ones. */
 static void limit_fluxes(const struct granular_pressure *by, double dt,
@@ -86,8 +95,7 @@ static void move(const struct granular_pressure *by, double dt, double *p,
           (p[node[1]] - by->p_old[node[1]]) - (p[node[0]] - by->p_old[node[0]]);
       u_f[f] =
           by->u_start[f] - dt * by->mobility_f[f] * mesh_slope(mesh, f, change);
-      flux[f] = u_f[f] *
-                granular_donor(mesh, f, dt, u_f[f], by->nu_old, by->slope[d]);
+      flux[f] = u_f[f] * donor(by, d, f, dt, u_f[f]);
     }
   }
   mesh_fill_faces(mesh, 2, (double *const[]){u_f, flux});
@@ -113,9 +121,7 @@ static void set_alpha(const struct granular_pressure *by, double dt,
   const struct mesh *mesh = by->mesh;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double nu = u_f[f] != 0 ? flux[f] / u_f[f]
-                                    : granular_donor(mesh, f, dt, 0, by->nu_old,
-                                                     by->slope[d]);
+      const double nu = u_f[f] != 0 ? flux[f] / u_f[f] : donor(by, d, f, dt, 0);
       by->alpha[f] = dt * dt * max2(nu, 0) * by->mobility_f[f];
     }
   }

@@ -71,12 +71,8 @@ void vof_reconstruct(const struct mesh *mesh, const double *c,
   mesh_fill_ghosts(mesh, DIM + 1, v);
 }
 
-/* Return the fraction of the volume swept through a face, `swept` edges of it
- * deep, that the plane of the upwind leaf fills. The leaf may be twice as
- * large as the face: then the face's part of it is one of its children. */
-static double swept_fraction(const struct mesh *mesh, int d, int32_t face,
-                             int upwind, double swept,
-                             double *const normal[DIM], const double *alpha) {
+double vof_swept(const struct mesh *mesh, int d, int32_t face, int upwind,
+                 double swept, double *const normal[DIM], const double *alpha) {
   const int32_t leaf = mesh->face_leaf[face][upwind];
   const int32_t node = mesh->face_node[face][upwind];
   double n[DIM], lo[DIM], hi[DIM];
@@ -114,9 +110,9 @@ void vof_flux(const struct mesh *mesh, int d, double dt, const double *u_f,
     } else if (!vof_is_cut(c[leaf]) || u == 0) {
       fraction = c[leaf];
     } else {
-      fraction = swept_fraction(mesh, d, f, upwind,
-                                mesh_swept(mesh, f, d, upwind, fabs(u) * dt),
-                                normal, alpha);
+      fraction = vof_swept(mesh, d, f, upwind,
+                           mesh_swept(mesh, f, d, upwind, fabs(u) * dt), normal,
+                           alpha);
     }
     flux[f] = u * fraction;
   }

@@ -83,6 +83,19 @@ void strain_shear_rate(const struct mesh *mesh, const struct skin *skin,
   for (int32_t f = 0; f < mesh->nfaces; f++) shear_f[f] = sqrt(shear_f[f]);
 }
 
+void strain_sliding_rate(const struct mesh *mesh, double *const u[DIM],
+                         double *slide_f) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      double grad[DIM][DIM], div = 0;
+      face_gradient(mesh, d, f, u, grad);
+      for (int e = 0; e < DIM; e++) div += grad[e][e];
+      const double squared = shear_squared(grad) - 2 * div * div;
+      slide_f[f] = squared > 0 ? sqrt(squared) : 0;
+    }
+  }
+}
+
 static void set_rows(double grad[DIM][DIM], int d, int32_t f,
                      double *const rows[STRAIN_ROWS]) {
   for (int e = 0; e < DIM; e++) {

@@ -9,6 +9,9 @@
 /* enum two_fluid_start */
 static const char *const STARTS[] = {"settled", "patched", "dense", NULL};
 
+/* enum two_fluid_surface */
+static const char *const SURFACES[] = {"none", "planes", NULL};
+
 /* clang-format would take three times the lines. */
 /* clang-format off */
 static const struct key KEYS[] = {
@@ -17,6 +20,11 @@ static const struct key KEYS[] = {
      .help = "solid fraction at t = 0: such that the pressure of the grains "
              "carries their weight; alpha_start everywhere; or that, with a "
              "plastic packing that makes it carry the weight"},
+    {"grains.surface", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "none", .unit = "",
+     .offset = AT(surface), .choices = SURFACES,
+     .help = "surface of beds inside closures and fluxes: none, all is of the "
+             "solid fraction of leaves, by which heaps level out; a plane in "
+             "each leaf, where heaps stand"},
     {"grains.alpha_start", KEY_NUMBER, .low = 1e-4, .high = 0.74, KEY_DEFAULT "0.6",
      .unit = "", .offset = AT(alpha_start),
      .help = "solid fraction of a patched or dense start, and for heights: "

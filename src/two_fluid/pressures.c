@@ -8,6 +8,7 @@
 #include "talus/projection.h"
 #include "talus/two_fluid/properties.h"
 #include "talus/two_fluid/state.h"
+#include "talus/two_fluid/surface.h"
 #include "talus/two_fluid_pair.h"
 
 enum { MOST_NEWTON = 40 };
@@ -197,7 +198,9 @@ static void start_grains(struct two_fluid *sim, double dt, double *u_f) {
 static void press(struct two_fluid *sim, double dt, double *p_s) {
   double *u_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   start_grains(sim, dt, u_f);
-  const struct granular_pressure by = two_fluid_material(sim, "pressure");
+  const struct granular_surface surface = {sim, two_fluid_passing};
+  struct granular_pressure by = two_fluid_material(sim, "pressure");
+  by.surface = &surface;
   const int newton = sim->pressure.newton;
   const int iterations = sim->pressure.iterations;
   sim->pressure = granular_pressure_solve(&by, dt, u_f, p_s, sim->alpha_new->v,

@@ -6,6 +6,7 @@
 #include "talus/minmax.h"
 #include "talus/strain.h"
 #include "talus/two_fluid/state.h"
+#include "talus/two_fluid/surface.h"
 #include "talus/two_fluid_drag.h"
 #include "talus/two_fluid_ktgf.h"
 
@@ -56,6 +57,15 @@ static void find_shear(struct two_fluid *sim) {
   }
 }
 
+/* Set the rates at which grains slide past each other at faces, filled. */
+static void find_sliding(struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *u[DIM];
+  field_arrays(sim->u[TWO_FLUID_S], u);
+  strain_sliding_rate(mesh, u, sim->force_f->v);
+  field_fill_faces(mesh, sim->force_f);
+}
+
 /* Return the shear rate of a leaf: the mean over its faces, which is exact
  * where it grows linearly. */
 static double leaf_shear(const struct mesh *mesh, const double *shear_f,
@@ -101,15 +111,29 @@ static double slip_between(const struct two_fluid *sim, int32_t a, int32_t b) {
   return sqrt(sum);
 }
 
+/* Return the shear rate of leaf i less that at which grains below their yield
+ * stress creep, as their viscosity is capped: only what yields dilates. */
+static double yielding_rate(const struct two_fluid *sim, int32_t i,
+                            double phi) {
+  const double gamma = sim->shear->v[i];
+  const struct two_fluid_stress stress =
+      two_fluid_stress(&sim->closure, phi, max2(sim->load->v[i], 0), gamma,
+                       sim->eta->v[i], sim->Theta->v[i]);
+  return max2(gamma - stress.tau_y / sim->eta_max, 0);
+}
+
 double two_fluid_next_packing(const struct two_fluid *sim, int32_t i,
                               double alpha, double dt) {
-  const double rate = two_fluid_plastic_rate(
-      &sim->closure, alpha, sim->load->v[i], sim->shear->v[i], sim->eta->v[i]);
+  const double phi = max2(alpha, sim->phi->v[i]);
+  const double rate =
+      two_fluid_plastic_rate(&sim->closure, phi, sim->load->v[i],
+                             yielding_rate(sim, i, phi), sim->eta->v[i]);
   return two_fluid_plastic(&sim->closure, sim->phi_p->v[i], rate, dt);
 }
 
-double two_fluid_law(const struct two_fluid *sim, int32_t i, double alpha,
-                     double dt, double *slope) {
+/* Return P of leaf i without a surface. */
+static double law(const struct two_fluid *sim, int32_t i, double alpha,
+                  double dt, double *slope) {
   static const double STEP = 1e-7; /* of alpha, for the slope by phi_p */
   const bool plastic = dt > 0 && sim->closure.set == TWO_FLUID_CRITICAL_STATE;
   struct two_fluid_frozen with = {
@@ -124,12 +148,20 @@ double two_fluid_law(const struct two_fluid *sim, int32_t i, double alpha,
   return p;
 }
 
+double two_fluid_law(const struct two_fluid *sim, int32_t i, double alpha,
+                     double dt, double *slope) {
+  const double p = law(sim, i, alpha, dt, slope), s = sim->rest->v[i];
+  if (p >= s * alpha) return p;
+  if (slope != NULL) *slope = s;
+  return s * alpha;
+}
+
 /* Return what shear by 1 would add to the pressure of leaf i, Pa: dense grains
  * dilate, and what holds them together presses until they can. */
 static double hardening_of(const struct two_fluid *sim, int32_t i, double p_s) {
   static const double STEP = 1e-6; /* of phi_p */
   const struct two_fluid_closure *c = &sim->closure;
-  const double alpha = sim->alpha->v[i], phi_p = sim->phi_p->v[i];
+  const double alpha = sim->phi->v[i], phi_p = sim->phi_p->v[i];
   const double gamma = max2(sim->shear->v[i], 1e-12);
   if (c->set != TWO_FLUID_CRITICAL_STATE) return 0;
   const double rate =
@@ -149,9 +181,9 @@ static void set_leaf(struct two_fluid *sim, int32_t i) {
   const double eta =
       two_fluid_viscosity(c, leaf_shear(mesh, sim->shear_f[TWO_FLUID_F]->v, i));
   const double beta =
-      two_fluid_drag_per_phi(c, alpha, slip_between(sim, i, i), eta);
+      two_fluid_drag_per_phi(c, sim->phi->v[i], slip_between(sim, i, i), eta);
   sim->drag->v[i] = beta;
-  sim->shear->v[i] = gamma;
+  sim->shear->v[i] = leaf_shear(mesh, sim->force_f->v, i);
   sim->eta->v[i] = eta;
   sim->Theta->v[i] = sim->p_s->v[i] = sim->hardening->v[i] = 0;
   if (!two_fluid_has_grains(sim, i)) return;
@@ -201,7 +233,7 @@ static double contact(const struct two_fluid *sim, int32_t i, int s,
   const double alpha = max2(sim->alpha->v[i], sim->alpha->v[there]);
   const double p = max2(sim->p_s->v[i], sim->p_s->v[there]);
   const double half = 0.5 * weight * mesh->h[i] * alpha;
-  return p < half ? max2(p, 0) / half : 1;
+  return two_fluid_wetted(sim, i, s) * (p < half ? max2(p, 0) / half : 1);
 }
 
 static void set_upper(struct two_fluid *sim) {
@@ -231,7 +263,9 @@ void two_fluid_properties(struct two_fluid *sim) {
   fill_alpha(sim);
   field_fill_many(mesh, DIM, sim->u[TWO_FLUID_F]);
   two_fluid_calm(sim);
+  two_fluid_find_surface(sim);
   find_shear(sim);
+  find_sliding(sim);
   for (int32_t i = 0; i < mesh->nleaves; i++) set_leaf(sim, i);
   set_face_drag(sim);
   fill_pressure(sim);
@@ -299,10 +333,9 @@ static void set_solid(struct two_fluid *sim, int d, int32_t f, double alpha,
 }
 
 void two_fluid_shear_leaves(struct two_fluid *sim) {
-  find_shear(sim);
+  find_sliding(sim);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
-    sim->shear->v[i] =
-        leaf_shear(sim->grid.mesh, sim->shear_f[TWO_FLUID_S]->v, i);
+    sim->shear->v[i] = leaf_shear(sim->grid.mesh, sim->force_f->v, i);
 }
 
 void two_fluid_viscosities(struct two_fluid *sim) {
@@ -318,7 +351,8 @@ void two_fluid_viscosities(struct two_fluid *sim) {
       sim->eta_f[TWO_FLUID_F]->v[f] =
           (1 - mean) * two_fluid_pore_viscosity(&sim->closure, mean, eta);
       sim->kappa_f[TWO_FLUID_F]->v[f] = 0;
-      set_solid(sim, d, f, mean, eta);
+      set_solid(sim, d, f, 0.5 * (sim->phi->v[node[0]] + sim->phi->v[node[1]]),
+                eta);
     }
   }
   for (int k = 0; k < TWO_FLUID_NPHASES; k++) {

@@ -106,6 +106,7 @@ static void add_state(struct two_fluid *sim) {
 static void add_leaves(struct two_fluid *sim) {
   static const char *const mean[] = {"velocity_x", "velocity_y", "velocity_z"};
   static const char *const upper[] = {"upper_x", "upper_y", "upper_z"};
+  static const char *const normal[] = {"normal_x", "normal_y", "normal_z"};
   const bool kinetic = sim->closure.set == TWO_FLUID_KTGF;
   sim->alpha_new = add(sim, "next_solid_fraction", "1", "", NULL, false);
   sim->load = add(sim, "load", "Pa", "", NULL, false);
@@ -122,7 +123,12 @@ static void add_leaves(struct two_fluid *sim) {
   sim->drag = add(sim, "drag", "kg/m^3/s", "", NULL, false);
   sim->c = add(sim, "fraction", "1",
                "solid fraction over that of the start, at most 1", NULL, true);
+  sim->phi = add(sim, "bed_fraction", "1", "", NULL, false);
+  sim->rest = add(sim, "resting", "Pa", "", NULL, false);
+  sim->carried = add(sim, "carried", "1", "", NULL, false);
+  sim->plane = add(sim, "plane", "1", "", NULL, false);
   for (int d = 0; d < DIM; d++) {
+    sim->normal[d] = add(sim, normal[d], "1", "", NULL, false);
     sim->upper[d] = add(sim, upper[d], "1", "", NULL, false);
     sim->mean[d] = add(sim, mean[d], "m/s",
                        "flux of the grains over their fraction", NULL, true);

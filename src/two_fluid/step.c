@@ -8,12 +8,10 @@
  * mean over the two faces of a leaf across an axis. In the order of the calls:
  *
  * two_fluid_time_step    dt, by what carries
- * two_fluid_properties   K, Theta, p_s = P(alpha^n), with gamma of u^n
- * two_fluid_velocities   velocities.h
- *     b = A(forces of p, p_s and weight)
- *     (m_s + theta m_f) u_s - dt div(tau_s + theta tau_f) = ..., twice, with
- *         eta_s of gamma of u^n and then of u_s
- *     (m_f + k) u_f - dt div tau_f = ...
+ * two_fluid_properties   planes of the surface, K, Theta, p_s = P(alpha^n),
+ * with gamma of u^n two_fluid_velocities   velocities.h b = A(forces of p, p_s
+ * and weight) (m_s + theta m_f) u_s - dt div(tau_s + theta tau_f) = ..., twice,
+ * with eta_s of gamma of u^n and then of u_s (m_f + k) u_f - dt div tau_f = ...
  *     u <- u^n + dt div tau/m
  * two_fluid_pressures    pressures.h, until j stays
  *     w = F(u)

@@ -63,10 +63,31 @@ START_TEST(a_layer_slides_beyond_repose) {
 }
 END_TEST
 
+/* Dense grains stay: they would have to expand, and have less than twice the
+ * pressure that holds them. */
+START_TEST(a_dense_layer_stays) {
+  double z[] = {-1, H}, rough, most = 0;
+  struct two_fluid_keys keys;
+  struct params p = slope(&keys, 25, 0.592);
+  p.shape = (struct function){bed, z};
+  struct two_fluid *sim = grains_new(&p);
+  const bool done = grains_run(sim, 0.5, 2000);
+  const double u = velocity(sim, &rough);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
+    most = fmax(most, sim->p_s->v[i]);
+  most = mesh_max(sim->grid.mesh, most);
+  two_fluid_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(u, 3e-5);
+  ck_assert_double_le(most, 50); /* Pa; weight 37, to hold 40 */
+}
+END_TEST
+
 Suite *two_fluid_slope_suite(void) {
   Suite *suite = suite_create("two_fluid_slope");
   TCase *flow = tcase_create("flow");
   tcase_add_loop_test(flow, a_layer_slides_beyond_repose, 0, 2);
+  tcase_add_test(flow, a_dense_layer_stays);
   suite_add_tcase(suite, flow);
   return suite;
 }

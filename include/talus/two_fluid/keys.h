@@ -13,10 +13,16 @@ enum two_fluid_start {
   TWO_FLUID_DENSE    /* likewise, with the plastic packing in balance */
 };
 
+enum two_fluid_surface {
+  TWO_FLUID_NO_SURFACE, /* closures and fluxes have the alpha of leaves */
+  TWO_FLUID_PLANES      /* surface.h */
+};
+
 struct two_fluid_keys {
   struct two_fluid_closure closure; /* prepared by the model */
   enum two_fluid_fluid fluid;
   enum two_fluid_start start;
+  enum two_fluid_surface surface;
   double alpha_start;   /* solid fraction of a patched or dense start */
   double alpha_surface; /* the contour that is the surface */
   double phi_p;         /* plastic packing at the start */

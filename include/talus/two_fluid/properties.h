@@ -10,8 +10,11 @@
 
 struct two_fluid;
 
-/* Fill alpha and the velocities, and set shear rates, drag, Theta and p_s
- * (filled). Collective. */
+/* Fill alpha and the velocities, and set the surface, shear rates, drag, Theta
+ * and p_s (filled). The shear rate of a leaf is that of grains that slide past
+ * each other, sqrt(2 (D:D - (tr D)^2)): grains that are squeezed or expand
+ * along one axis, as beds do that settle, do not dilate for that.
+ * Collective. */
 void two_fluid_properties(struct two_fluid *sim);
 /* Set the shear rates of the grains in leaves; both velocities are filled.
  * Collective. */
@@ -23,13 +26,14 @@ void two_fluid_shear_leaves(struct two_fluid *sim);
  * the shear rate there, and on walls the weight of the grains that lie on the
  * wall; faces to leaves without grains have none. Collective. */
 void two_fluid_viscosities(struct two_fluid *sim);
-/* Return P of leaf i at a solid fraction alpha, with the phi_p that shear will
- * have made of that of the leaf in dt: grains that are too dense for their
- * shear push at once, and are let go as they expand. slope: unless NULL,
- * dP/dalpha. */
+/* Return P of leaf i at a solid fraction alpha, at least that of surface.h
+ * where the bed ends, with the phi_p that shear will have made of that of the
+ * leaf in dt: grains that are too dense for their shear push at once, and are
+ * let go as they expand. slope: unless NULL, dP/dalpha. */
 double two_fluid_law(const struct two_fluid *sim, int32_t i, double alpha,
                      double dt, double *slope);
-/* Return the plastic packing of leaf i after dt of shear at alpha. */
+/* Return the plastic packing of leaf i after dt of shear at alpha, beyond the
+ * shear rate at which grains below their yield stress creep for eta_max. */
 double two_fluid_next_packing(const struct two_fluid *sim, int32_t i,
                               double alpha, double dt);
 /* Give leaves without grains the velocity of the grains around them, else that

@@ -73,7 +73,13 @@ struct two_fluid {
   struct field *mobility_f;             /* m of granular_pressure.h, m^3/kg */
   struct field *lambda_f;               /* mobility of the mixture, m^3/kg */
   struct field *force_f;                /* lambda grad p, m/s^2 */
-  struct field *c;                      /* what adaptation follows */
+  struct field *c;       /* part of a leaf that grains fill, for planes and for
+                            adaptation, which follows it */
+  struct field *phi;     /* solid fraction of the bed in a leaf; surface.h */
+  struct field *rest;    /* s of surface.h, 0 but at the surface, Pa */
+  struct field *carried; /* load over half the weight of a leaf, at most 1 */
+  struct field *normal[DIM]; /* planes of c */
+  struct field *plane;
   struct scratch scratch;
 
   /* For output, on demand */

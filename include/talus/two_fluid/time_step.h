@@ -2,9 +2,10 @@
 /* The length of a step. What carries grains or fluid through faces crosses less
  * than cfl of a leaf, grains that are packed change their solid fraction by at
  * most a fifth of it, and gravity waves cross less than a leaf: dt < 0.4
- * sqrt(h/g'), as weight follows grains that have moved by one step. Sound,
- * drag, viscosity and consolidation do not bound dt, nor do velocities of
- * leaves that carry nothing. */
+ * sqrt(h/g'), as weight follows grains that have moved by one step; 0.1
+ * sqrt(h/g') where grains of critical_state are denser than in steady shear.
+ * Sound, drag, viscosity and consolidation do not bound dt, nor do velocities
+ * of leaves that carry nothing. */
 #ifndef TALUS_TWO_FLUID_TIME_STEP_H
 #define TALUS_TWO_FLUID_TIME_STEP_H
 

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The surface of a bed inside closures and fluxes.
+ *
+ * The mean solid fraction alpha of a leaf that a bed fills in part is below
+ * every packing that carries load, so the leaf has no strength, and a heap of
+ * such leaves levels out. Here the bed in a leaf that rests on another one is
+ * at rest under its own weight: its pressure in the middle is
+ *
+ *   p_s = s alpha,  s = h (rho_s - rho_f) g/2,
+ *
+ * its solid fraction phi that of P(phi) = s alpha, and it fills c = alpha/phi
+ * of the leaf. Where alpha > phi it fills all of it and P(alpha) > s alpha, so
+ *
+ *   P_surface(alpha) = max(P(alpha), s alpha)
+ *
+ * rises and is convex like P, and beds on leaves are balanced as they are in
+ * the continuum: the difference of p_s from leaf to leaf is the weight between
+ * their middles, (alpha_0 + alpha_1)/2 of it. A leaf rests on a wall, or on one
+ * below that carries the weight of half of its own grains; and it has fewer
+ * grains above than it holds itself, which lie half a grain thick. c is of
+ * alpha alone, so nothing else has to be carried or kept.
+ *
+ * The key grains.surface turns this on. It is not the default: heaps stand
+ * (tests/mesh/test_two_fluid_surface.c), but grains at the top of flat beds,
+ * some leaves wide, move sideways by 0.1 mm/s (docs/notes/two_fluid.md).
+ *
+ * What passes a face of such a leaf is phi times the part of the volume swept
+ * that the plane of c fills (vof.h): nothing where the bed does not reach.
+ */
+#ifndef TALUS_TWO_FLUID_SURFACE_H
+#define TALUS_TWO_FLUID_SURFACE_H
+
+#include <stdint.h>
+
+#include "talus/granular_pressure.h"
+
+struct two_fluid;
+
+/* Set c, phi and s of leaves and the planes of the surface. alpha is filled.
+ * Collective. */
+void two_fluid_find_surface(struct two_fluid *sim);
+/* Return the part of side s (2d lower, 2d + 1 upper) of leaf i that its bed
+ * reaches: 1 unless the surface cuts the leaf. */
+double two_fluid_wetted(const struct two_fluid *sim, int32_t i, int s);
+/* As passing of granular_pressure.h; context is the struct two_fluid. */
+double two_fluid_passing(const void *context, int d, int32_t f, double dt,
+                         double u_f, double otherwise);
+
+#endif
