@@ -97,6 +97,8 @@ struct collapse {
   struct four_state *sim;
   double tau_c;
   struct four_state_measures m;
+  double kinetic; /* of the last step */
+  int rises;      /* steps after 2 tau_c in which it rose */
 };
 
 static struct collapse column_new(const char *level) {
@@ -112,10 +114,31 @@ static struct collapse column_new(const char *level) {
   return column;
 }
 
+/* Return the kinetic energy of leaves with nu > 1e-3: a few grains that fly
+ * above the heap fall freely, J/m. */
+static double kinetic_of(const struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double sum = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double speed = hypot(sim->u[0]->v[i], sim->u[1]->v[i]);
+    if (sim->nu->v[i] > 1e-3)
+      sum += 1250 * sim->nu->v[i] * mesh_volume(mesh, i) * speed * speed;
+  }
+  return mesh_sum(mesh, sum);
+}
+
 /* Carry on to so many tau_c and measure. */
 static bool column_run(struct collapse *column, double time) {
+  const double end = time * column->tau_c;
+  bool good = true;
   outline_free(&column->m.outline);
-  const bool good = beads_run(column->sim, time * column->tau_c, 100000);
+  while (good && column->sim->model.time < end * (1 - 1e-12)) {
+    good = beads_run(column->sim, end, 1);
+    const double kinetic = kinetic_of(column->sim);
+    if (column->sim->model.time > 2 * column->tau_c)
+      column->rises += kinetic > column->kinetic;
+    column->kinetic = kinetic;
+  }
   four_state_measure(column->sim, &column->m);
   return good;
 }
@@ -195,6 +218,8 @@ static void report_column(struct report *report) {
   good = column_run(&column, 6);
   report_at_least(report, "case 2", "part of the mass below 1 cm/s at 6 tau_c",
                   8, good ? part_below(column.sim, 0.01) : NAN, 0.99);
+  report_at_most(report, "case 2", "steps after 2 tau_c that make it faster", 8,
+                 column.rises, 0);
   report_at_most(report, "case 2", "change of mass", 8,
                  fabs(column.m.volume / volume - 1), 1e-12);
   report_at_most(report, "case 2", "largest solid fraction", 8, column.m.max_nu,

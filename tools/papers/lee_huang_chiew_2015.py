@@ -12,6 +12,7 @@ import plot_packing
 import plot_state
 import run_data
 from papers.study import Row, make_panels, within
+from matplotlib.colors import LogNorm
 import numpy as np
 
 LEVEL = 8  # leaves of 2.5 mm
@@ -163,6 +164,51 @@ def figure_8(study):
     study.finish(fig, rows)
 
 
+# The vacuum
+
+
+CLOUD_AT = 2  # tau_c
+WINDOW = (0, 0.64, 0, 0.12)  # m
+COLDEST, HOTTEST = 1e-6, 100  # of the colours, m^2/s^2
+
+
+def draw_cloud(ax, run):
+    """T of all leaves with grains, and the contour nu = 0.1."""
+    paths = run_data.find_snapshots(run.directory)
+    snapshot = plot_state.nearest(paths, [CLOUD_AT * run.tau_c])[0]
+    spacing = float((snapshot.high - snapshot.low).min())
+    nu, T = (snapshot.sample(snapshot.fields[name], WINDOW, spacing)[2]
+             for name in ("solid_fraction", "temperature"))
+    T = np.where(nu > 1e-4, np.maximum(T, COLDEST), np.nan)
+    picture = ax.imshow(T, origin="lower", extent=WINDOW, cmap="inferno",
+                        norm=LogNorm(COLDEST, HOTTEST))
+    ax.contour(nu, [0.1], extent=WINDOW, colors="#24639c", linewidths=0.8)
+    ax.set_ylabel("height, m")
+    return picture
+
+
+def vacuum(study):
+    """Where grains are few mu_K stays finite and dissipation falls as nu^2: a hot
+    cloud that sticks to the bed holds the front back, by as much as T may grow.
+    """
+    runs = {"divided by 1 + (mean free path)/(10 d), T up to 1 m$^2$/s$^2$":
+            column(study, stop=6),
+            "as printed, T up to 100 m$^2$/s$^2$":
+            column(study, stop=6, knudsen=1e30, T_max=100)}
+    fig, axes = make_panels(2, 1, height=1.9, sharex=True)
+    for ax, (words, run) in zip(axes, runs.items()):
+        picture = draw_cloud(ax, run)
+        ax.set_title(words, loc="left", fontsize=8)
+    axes[-1].set_xlabel(f"x, m, at {CLOUD_AT} tau_c")
+    fig.colorbar(picture, ax=list(axes), label="T, m$^2$/s$^2$")
+    paper = list(runs.values())[1]
+    study.finish(fig, [
+        Row("run-out, divided, cm", 100 * list(runs.values())[0].runout, "",
+            within(26.6, 1.5)),
+        Row("run-out, as printed, cm", 100 * paper.runout, "20.7",
+            within(20.7, 0.07 * 20.7))])
+
+
 # Table II
 
 
@@ -207,4 +253,5 @@ FIGURES = {
     "6": ("solid fraction at the start and size of leaves", figure_6),
     "7": ("final height and run-out against the aspect ratio", figure_7),
     "8": ("states of the grains at tau_c and 2 tau_c", figure_8),
+    "vacuum": ("temperature of the few grains outside", vacuum),
     "II": ("sensitivity of case 2 to the parameters", table_2)}
