@@ -286,20 +286,22 @@ static double wall_pressure(const struct two_fluid *sim, int d, int32_t f) {
          0.5 * sim->alpha->v[i] * difference * max2(g, 0) * mesh->h[i];
 }
 
-/* Return what the shear rate gamma of face f adds to the pressure of its leaves
- * by X, Pa, which have X of the shear rate of the last step. Without it stress
- * would not depend on the shear rate that a solve is after, and all shear would
- * gather where p_s is least (tests/convergence/test_two_fluid_shear.c). */
+/* Return what the shear rate gamma of face f adds to its pressure p by X, Pa,
+ * which has the part of X that p_s of its leaves has, of the last step. Without
+ * it stress would not depend on the shear rate that a solve is after, and all
+ * shear would gather where p_s is least
+ * (tests/convergence/test_two_fluid_shear.c). */
 static double sheared(const struct two_fluid *sim, int32_t f, double alpha,
-                      double gamma, double eta_fluid) {
+                      double p, double gamma, double eta_fluid) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct two_fluid_closure *c = &sim->closure;
   const bool side = mesh->face_patch[f] >= 0;
   const int32_t a = side ? mesh->face_owner[f] : mesh->face_node[f][0];
   const int32_t b = side ? mesh->face_owner[f] : mesh->face_node[f][1];
+  const double p_s = sim->p_s->v[a] + sim->p_s->v[b];
   struct two_fluid_frozen with = {
       .phi_p = 0.5 * (sim->phi_p->v[a] + sim->phi_p->v[b]),
-      .X = 0.5 * (sim->X->v[a] + sim->X->v[b])};
+      .X = p_s > 0 ? (sim->X->v[a] + sim->X->v[b]) * p / p_s : 0};
   const double before = two_fluid_pressure(c, alpha, &with, NULL);
   with.X = two_fluid_relaxed_shear(
       c, with.X, two_fluid_shear(c, gamma, eta_fluid), alpha, gamma, sim->dt);
@@ -324,7 +326,7 @@ static void set_solid(struct two_fluid *sim, int d, int32_t f, double alpha,
   const double gamma = sim->shear_f[TWO_FLUID_S]->v[f];
   const double *C = sim->hardening->v;
   const double more = 0.5 * (C[node[0]] + C[node[1]]) * (gamma * sim->dt) +
-                      sheared(sim, f, alpha, gamma, eta_fluid);
+                      sheared(sim, f, alpha, p, gamma, eta_fluid);
   const struct two_fluid_stress stress =
       two_fluid_stress(&sim->closure, alpha, max2(p + more, 0), gamma,
                        eta_fluid, 0.5 * (Theta[node[0]] + Theta[node[1]]));
