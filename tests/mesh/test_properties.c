@@ -103,7 +103,8 @@ START_TEST(shear_rate_of_linear_velocities_is_exact) {
   const struct mesh *mesh = b->mesh;
   struct field *field[DIM];
   double *u[DIM], grad[DIM][DIM], squared = 0, most = 0, count = 0;
-  double *shear_f = bench_face(b, "shear")->v;
+  double *shear_f = bench_face(b, "shear")->v, div = 0;
+  double *slide_f = bench_face(b, "slide")->v;
   bench_vector(b, names, field);
   field_arrays(field, u);
   srand(11); /* the same on all ranks */
@@ -120,8 +121,11 @@ START_TEST(shear_rate_of_linear_velocities_is_exact) {
       const double strain = 0.5 * (grad[e][d] + grad[d][e]);
       squared += 2 * strain * strain; /* 2 D:D */
     }
+    div += grad[e][e];
   }
+  const double slide = sqrt(fmax(squared - 2 * div * div, 0));
   strain_shear_rate(mesh, NULL, u, shear_f);
+  strain_sliding_rate(mesh, u, slide_f);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       if (_i & 1) { /* across a periodic side the profile jumps */
@@ -132,6 +136,7 @@ START_TEST(shear_rate_of_linear_velocities_is_exact) {
         if (!middle) continue;
       }
       most = larger(most, fabs(shear_f[f] - sqrt(squared)));
+      most = larger(most, fabs(slide_f[f] - slide));
       count++;
     }
   }
