@@ -477,8 +477,9 @@ def plot_history(options, run):
             ax.legend(fontsize=9, loc="best")
     for ax in axes.flat[len(panels):]:
         ax.set_visible(False)
-    for ax in axes[-1]:
+    for ax in axes.flat[len(panels) - columns:len(panels)]:  # lowest
         ax.set_xlabel(label("time", run.units.time))
+        ax.tick_params(labelbottom=True)
     fig.suptitle("\n".join(run.title(4.8 * columns) + [words_on_volume(change)]),
                  fontsize=11)
     return save(fig, options, "history.png")
