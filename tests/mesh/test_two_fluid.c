@@ -45,7 +45,7 @@ START_TEST(a_settled_bed_rests) {
   struct two_fluid *sim = grains_new(&p);
   struct two_fluid_measures before, after;
   two_fluid_measure(sim, &before);
-  const bool done = grains_run(sim, 1, 300);
+  const bool done = grains_run(sim, 0.4, 300);
   two_fluid_measure(sim, &after);
   const double flux = grains_flux(sim);
   outline_free(&before.outline), outline_free(&after.outline);
@@ -66,7 +66,7 @@ START_TEST(a_plastic_bed_rests) {
   struct params p = grains_params(&keys, 0.16, LEVEL);
   p.shape = (struct function){bed, z};
   struct two_fluid *sim = grains_new(&p);
-  const bool done = grains_run(sim, 1, 300);
+  const bool done = grains_run(sim, 0.3, 300);
   const double flux = grains_flux(sim);
   two_fluid_destroy(sim);
   ck_assert(done);
