@@ -7,9 +7,8 @@
 #include "talus/minmax.h"
 #include "talus/ring.h"
 
-/* Halvings of a piece on which f is 0 all over, and the last ones, which a
- * piece that a plane cuts need not take. */
-enum { BLIND = 6, LAST = 2 };
+/* Halvings of a piece on which f is 0 all over. */
+enum { BLIND = 6 };
 
 enum { NVERTEX = 1 << DIM, NLATTICE = DIM == 2 ? 9 : 27 };
 
@@ -83,12 +82,6 @@ static double fit_plane(const struct piece *p, double n[DIM]) {
   return residual;
 }
 
-/* Is f linear, up to round-off, as far as the piece knows it? */
-static bool is_plane(const struct piece *p, double change) {
-  double n[DIM];
-  return change > 0. && fit_plane(p, n) <= 1e-13 * (change + fabs(p->centre));
-}
-
 /* Return the fraction of a piece that is not halved any more. */
 static double cut_piece(const struct shape *shape, const struct piece *p) {
   double mean = 0., n[DIM], norm = 0.;
@@ -151,9 +144,7 @@ static double piece_fraction(const struct shape *shape, const struct piece *p,
   int sign = common_sign(p, 0.);
   if (sign && fabs(p->centre) > 1.5 * change) return sign > 0 ? 1. : 0.;
   blind = p->centre == 0 && change == 0 ? blind - 1 : BLIND;
-  if (depth <= 0 || blind < 0 || (depth <= LAST && is_plane(p, change))) {
-    return cut_piece(shape, p);
-  }
+  if (depth <= 0 || blind < 0) return cut_piece(shape, p);
   double lattice[NLATTICE], sum = 0.;
   fill_lattice(shape, p, lattice);
   for (int child = 0; child < NVERTEX; child++) {
