@@ -14,9 +14,7 @@
  *   f0 = 2/3 f(centre) + 1/3 mean of f over the vertices                 (2)
  *
  * is the mean of f over the piece up to third derivatives, so that the
- * curvature of the surface is felt although the cut is plane. Pieces on which f
- * is linear, as far as their vertices and centre tell, are cut two halvings
- * earlier.
+ * curvature of the surface is felt although the cut is plane.
  *
  * f need not be a distance, and its scale does not matter. A cell counts as all
  * in or all out when f has one sign at its vertices and centre, and f at the

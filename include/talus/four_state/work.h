@@ -18,7 +18,7 @@
  * that are longer than a shock takes, and the first order in time of p, are in
  * impact, too. p_K and p_D do work that T does not pay for, as eq. 3 of
  * [lee_huang_chiew_2015] has no -p div u: impact may fall where grains spread.
- * What the scheme loses or makes by carrying mass and momentum is in neither.
+ * Neither holds what the scheme loses or makes by carrying mass and momentum.
  */
 #ifndef TALUS_FOUR_STATE_WORK_H
 #define TALUS_FOUR_STATE_WORK_H

@@ -24,8 +24,8 @@
  * (tests/mesh/test_two_fluid_surface.c), but grains at the top of flat beds,
  * some leaves wide, move sideways by 0.1 mm/s (docs/notes/two_fluid.md).
  *
- * What passes a face of such a leaf is phi times the part of the volume swept
- * that the plane of c fills (vof.h): nothing where the bed does not reach.
+ * Faces of such a leaf pass phi times the part of the volume swept that the
+ * plane of c fills (vof.h): nothing where the bed does not reach.
  */
 #ifndef TALUS_TWO_FLUID_SURFACE_H
 #define TALUS_TWO_FLUID_SURFACE_H
