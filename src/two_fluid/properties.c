@@ -208,8 +208,9 @@ static void set_face_drag(struct two_fluid *sim) {
   }
 }
 
-/* Fill p_s and Theta; p_s is interpolated by weight, since beside the surface
- * leaves that are nearly empty would get the pressure of those below. */
+/* Fill what faces take of leaves: p_s, Theta, hardening, phi_p and X. p_s is
+ * interpolated by weight, since beside the surface leaves that are nearly empty
+ * would get the pressure of those below. */
 static void fill_pressure(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct bc *bc = sim->p_s->bc;
@@ -221,6 +222,9 @@ static void fill_pressure(struct two_fluid *sim) {
   clamp_helpers(sim, sim->Theta->v, 0, HUGE_VAL);
   field_fill(mesh, sim->hardening);
   clamp_helpers(sim, sim->hardening->v, 0, HUGE_VAL);
+  field_fill(mesh, sim->phi_p);
+  field_fill(mesh, sim->X);
+  clamp_helpers(sim, sim->X->v, 0, HUGE_VAL);
   mesh_fill_potential(mesh, sim->weight->v, 1, &sim->p_s->v, &bc, false);
 }
 
@@ -302,9 +306,11 @@ static double sheared(const struct two_fluid *sim, int32_t f, double alpha,
   struct two_fluid_frozen with = {
       .phi_p = 0.5 * (sim->phi_p->v[a] + sim->phi_p->v[b]),
       .X = p_s > 0 ? (sim->X->v[a] + sim->X->v[b]) * p / p_s : 0};
-  const double before = two_fluid_pressure(c, alpha, &with, NULL);
-  with.X = two_fluid_relaxed_shear(
+  const double X = two_fluid_relaxed_shear(
       c, with.X, two_fluid_shear(c, gamma, eta_fluid), alpha, gamma, sim->dt);
+  if (X == with.X) return 0;
+  const double before = two_fluid_pressure(c, alpha, &with, NULL);
+  with.X = X;
   return two_fluid_pressure(c, alpha, &with, NULL) - before;
 }
 
