@@ -2,7 +2,7 @@
 /*
  * Errors of the program.
  *
- * Six tools, each for one kind of trouble:
+ * Seven tools, each for one kind of trouble:
  *
  *   ASSERT(cond)           a bug; debug builds only, allowed in hot loops
  *   CHECK(cond, fmt, ...)  a broken contract between modules; always on
@@ -10,9 +10,10 @@
  *   USER_ERROR(fmt, ...)   the user asked for something that cannot be
  *   SYSTEM_ERROR(fmt, ...) so, but for want of something on this machine
  *   WARN_ONCE(fmt, ...)    the run goes on, but somebody should know
+ *   WARN(fmt, ...)         likewise of the case, each time
  *
- * All but these two add rank, file, line and function. Word a message as:
- * what happened, the value, what is allowed, what to try.
+ * All but the errors of users and WARN add rank, file, line and function. Word
+ * a message as: what happened, the value, what is allowed, what to try.
  *
  * Before base_begin and after base_end (program.h) the program is taken to be
  * rank 0 of 1, so that code without a mesh can be tested without MPI.
@@ -92,6 +93,9 @@ int base_size(void);
     }                                                       \
   } while (0)
 
+/* Warns on stderr and in the log. Only rank 0 prints, as above. */
+#define WARN(...) base_tell(__VA_ARGS__)
+
 /* Runs an MPI call and ends the program as FATAL does, with the words of MPI,
  * unless it returns MPI_SUCCESS. */
 #define MPI_CHECK(call) \
@@ -120,6 +124,8 @@ void base_system_error(const char *format, ...)
     __attribute__((format(printf, 1, 2), noreturn, cold));
 void base_user_error_alone(const char *format, ...)
     __attribute__((format(printf, 1, 2), noreturn, cold));
+void base_tell(const char *format, ...)
+    __attribute__((format(printf, 1, 2), cold));
 void base_warn(const char *file, int line, const char *function,
                const char *format, ...)
     __attribute__((format(printf, 4, 5), cold));

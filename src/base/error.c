@@ -147,6 +147,17 @@ void base_user_error_alone(const char *format, ...) {
   exit(EXIT_USER);
 }
 
+void base_tell(const char *format, ...) {
+  if (rank != 0) return;
+  char message[MESSAGE_LENGTH];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(message, sizeof message, format, arguments);
+  va_end(arguments);
+  fprintf(stderr, "talus: warning: %s\n", message);
+  record("warning: %s", message);
+}
+
 void base_warn(const char *file, int line, const char *function,
                const char *format, ...) {
   if (rank != 0) return;

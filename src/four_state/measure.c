@@ -34,6 +34,7 @@ static double speed_squared(const struct four_state *sim, int32_t i) {
   return sum;
 }
 
+/* Return the square of the speed below which grains are slow, m^2/s^2. */
 static double slow_squared(const struct four_state *sim) {
   double g2 = 0;
   for (int d = 0; d < DIM; d++)
@@ -41,7 +42,7 @@ static double slow_squared(const struct four_state *sim) {
   return SLOW * SLOW * sqrt(g2) * sim->closure.param[LEE_HUANG_D];
 }
 
-static void add_leaf(const struct four_state *sim, int32_t i,
+static void add_leaf(const struct four_state *sim, int32_t i, double slow2,
                      double sum[NSUMS]) {
   const struct mesh *mesh = sim->grid.mesh;
   const double rho = sim->closure.param[LEE_HUANG_RHO_D];
@@ -55,13 +56,14 @@ static void add_leaf(const struct four_state *sim, int32_t i,
   }
   sum[ELASTIC] += grains * four_state_elastic(&sim->closure, nu);
   sum[SPEED2] += grains * u2;
-  if (u2 < slow_squared(sim)) sum[SLOW_VOLUME] += grains;
+  if (u2 < slow2) sum[SLOW_VOLUME] += grains;
 }
 
 static void sum_leaves(const struct four_state *sim, double sum[NSUMS]) {
   const struct mesh *mesh = sim->grid.mesh;
+  const double slow2 = slow_squared(sim);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    if (sim->nu->v[i] > 0) add_leaf(sim, i, sum);
+    if (sim->nu->v[i] > 0) add_leaf(sim, i, slow2, sum);
   }
   MPI_CHECK(
       MPI_Allreduce(MPI_IN_PLACE, sum, NSUMS, MPI_DOUBLE, MPI_SUM, mesh->comm));

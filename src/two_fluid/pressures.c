@@ -200,7 +200,7 @@ static void press(struct two_fluid *sim, double dt, double *p_s) {
   start_grains(sim, dt, u_f);
   const struct granular_surface surface = {sim, two_fluid_passing};
   struct granular_pressure by = two_fluid_material(sim, "pressure");
-  by.surface = &surface;
+  if (sim->keys->surface == TWO_FLUID_PLANES) by.surface = &surface;
   const int newton = sim->pressure.newton;
   const int iterations = sim->pressure.iterations;
   sim->pressure = granular_pressure_solve(&by, dt, u_f, p_s, sim->alpha_new->v,

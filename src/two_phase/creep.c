@@ -2,7 +2,6 @@
 #include "talus/two_phase/creep.h"
 
 #include <math.h>
-#include <stdio.h>
 
 #include "talus/error.h"
 #include "talus/log.h"
@@ -41,21 +40,16 @@ void creep_say(const struct params *params, double height) {
   /* below this what is left of a liquid's stress is no friction */
   enum { NONE = 1000 };
   const double speed = creep_speed(params, height);
-  char line[512];
   if (creep_friction(params, height) * NONE < 1 || speed < 1e-20) return;
   log_info(
       "the cap eta_max = %.4g lets slopes of height H = %.4g creep at up to "
       "%.3g, %.2g sqrt(g H)",
       params->grains.rheology.eta_max, height, speed,
       speed / sqrt(gravity_of(params) * height));
-  if (base_rank() != 0 || !(params->rest_time > 0) ||
-      params->rest_speed >= speed)
-    return;
-  snprintf(line, sizeof line,
-           "output.stop_at_rest.speed = %g is below the creep that eta_max = "
-           "%.4g allows, %.3g: grains that creep are not at rest; take a "
-           "larger eta_max or a larger speed",
-           params->rest_speed, params->grains.rheology.eta_max, speed);
-  fprintf(stderr, "talus: warning: %s\n", line);
-  log_info("warning: %s", line);
+  if (!(params->rest_time > 0) || params->rest_speed >= speed) return;
+  WARN(
+      "output.stop_at_rest.speed = %g is below the creep that eta_max = %.4g "
+      "allows, %.3g: grains that creep are not at rest; take a larger eta_max "
+      "or a larger speed",
+      params->rest_speed, params->grains.rheology.eta_max, speed);
 }

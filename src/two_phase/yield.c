@@ -2,7 +2,6 @@
 #include "talus/two_phase/yield.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "talus/error.h"
@@ -396,19 +395,16 @@ double yield_advance(struct two_phase *sim, double dt, const double *r,
 
 void yield_say_misfit(struct two_phase *sim, int solves, double mismatch,
                       double want, double bad) {
-  char line[512];
   log_info(
       "step %lld: %d solves leave a mismatch of stress and load of %.3g, "
       "wanted is %g",
       (long long)sim->model.step, solves, mismatch, want);
-  if (!(mismatch > bad) || sim->yield.misfits++ > 0 || base_rank() != 0) return;
-  snprintf(line, sizeof line,
-           "step %lld: %d solves leave a mismatch of stress and load of %.3g; "
-           "above %g grains that the yield stress holds may move, and others "
-           "lag: take a smaller solver.dt_max (said once; run.log has all)",
-           (long long)sim->model.step, solves, mismatch, bad);
-  fprintf(stderr, "talus: warning: %s\n", line);
-  log_info("warning: %s", line);
+  if (!(mismatch > bad) || sim->yield.misfits++ > 0) return;
+  WARN(
+      "step %lld: %d solves leave a mismatch of stress and load of %.3g; above "
+      "%g grains that the yield stress holds may move, and others lag: take a "
+      "smaller solver.dt_max (said once; run.log has all)",
+      (long long)sim->model.step, solves, mismatch, bad);
 }
 
 bool yield_is_reached(const struct yield *yield, int d, int32_t f) {
