@@ -16,7 +16,8 @@
  *   mu_i_phi_i      p_c of rauter; X = rho_s (b d gamma)^2 with no viscous
  * part; mu = mu_1 + (mu_2 - mu_1)/(1 + I_0/I),  I = d gamma sqrt(rho_s/p_s),
  *       phi = phi_m/(1 + b I), b = slope/phi_m: phi_m - slope I for small I,
- *       and p_s = 0 at phi = 0, which the straight line lacks
+ *       and p_s = 0 at phi = 0, which the straight line lacks; phi_rcp <=
+ * phi_m, as a bed that rests denser than all that flows bursts when it yields
  * Grains of rauter forget how they were laid, p_c is of phi; grains of
  * critical_state remember by phi_p. Its phi_m is its phi_max, as in sedFoam's
  * cases of collapse, since dense beds have phi > 0.585.

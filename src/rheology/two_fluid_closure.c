@@ -97,6 +97,9 @@ static const char *wrong_shearing(const struct two_fluid_closure *c) {
     return c->set == TWO_FLUID_CRITICAL_STATE
                ? "phi_p_low must be at least 0.02 below phi_max"
                : "phi_rlp must be at least 0.02 below phi_rcp";
+  if (c->set == TWO_FLUID_MU_I_PHI_I && by->pole > by->phi_m)
+    return "phi_rcp is more than phi_m, and what rests would be denser than "
+           "all that flows, and burst; take phi_rcp = phi_m";
   if (c->set == TWO_FLUID_CRITICAL_STATE &&
       c->param[TWO_FLUID_CS_PHI_P_HIGH] < by->low)
     return "phi_p_high is less than phi_p_low";

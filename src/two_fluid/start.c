@@ -193,11 +193,11 @@ struct two_fluid *two_fluid_new(const struct params *params,
   struct two_fluid *sim =
       two_fluid_new_on(params, forest_new(MPI_COMM_WORLD, &layout, level));
   sim->grid.most_leaves = start->most_leaves;
-  check_packing(sim);
   const int axis = outline_axis(params->gravity);
   const bool settled =
       sim->keys->start == TWO_FLUID_SETTLED && params->gravity[axis] != 0;
   struct depths depths = {0};
+  if (!settled) check_packing(sim);
   if (settled)
     depths = depths_new(weight_of(sim, axis),
                         params->size * params->trees[axis], packed, sim);

@@ -82,6 +82,11 @@ sed 's/d = 1e-3/d = 1e-3, rho_d = 2/' cliff.lua > key.lua
 ends 2 "$talus" check key.lua
 says 'rho_d'
 
+# grains of mu(I) and phi(I) hold a settled start
+ends 0 "$talus" run "$root/examples/cliff.lua" closure=mu_i_phi_i level=5 \
+  stop=0.2 -o gas --quiet
+grep -q burst output && complain "grains of mu_i_phi_i burst"
+
 # a run that makes energy is not passed over
 ends 0 "$talus" run cliff.lua start=patched phi=0.62 stop=0.1 -o dense --quiet
 says 'J more than at the start.*they have burst'

@@ -227,6 +227,7 @@ START_TEST(numbers_that_contradict_are_refused) {
                {TWO_FLUID_CRITICAL_STATE, "phi_c", 0.63},
                {TWO_FLUID_RAUTER, "phi_rlp", 0.62},
                {TWO_FLUID_MU_I_PHI_I, "mu_2", 0.1},
+               {TWO_FLUID_MU_I_PHI_I, "phi_rcp", 0.6},
                {TWO_FLUID_KTGF, "phi_fr", 0.62},
                {TWO_FLUID_KTGF, "phi_star", 0.63}};
   for (size_t k = 0; k < sizeof WRONG / sizeof *WRONG; k++) {
