@@ -19,7 +19,7 @@
  *
  * for "clip" (2), "papanastasiou" (3) and "bercovier_engelman" (4), and cuts
  * the result to [eta_min, eta_max]; "exact" caps nothing, and the stress is
- * made of both parts by the model (two_phase/yield.h). (2) is [valette_2019,
+ * made of both parts by the model (yield.h). (2) is [valette_2019,
  * eq. 3], (4) with eta_min the viscosity of air is [valette_2019, eq. 7], and
  * gamma_r is the key gamma_r; 1/gamma_r is Papanastasiou's time m. The cap of
  * [lagree_staron_popinet_2011] is (2) with eta_max = 250 rho sqrt(g H^3).

@@ -53,6 +53,11 @@ void strain_sliding_rate(const struct mesh *mesh, double *const u[DIM],
 /* rows [strain_rows][nfaces_all]: D, 1/s. Collective. */
 void strain_find(const struct mesh *mesh, const struct skin *skin,
                  double *const u[DIM], double *const rows[STRAIN_ROWS]);
+/* rows [STRAIN_ROWS][nfaces_all]: D - (tr D)/3 I, 1/s, of a flow that changes
+ * its volume; in a plane flow the row of the hoop is that across the plane.
+ * Collective. */
+void strain_find_deviator(const struct mesh *mesh, double *const u[DIM],
+                          double *const rows[STRAIN_ROWS]);
 /* force[e] [nleaves] = (div s)_e, N/m^3, of a stress s [nfaces_all], Pa, whose
  * first DIM rows, and in rings the hoop, are filled. */
 void strain_divergence(const struct mesh *mesh, double *const s[],

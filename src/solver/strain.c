@@ -142,6 +142,24 @@ void strain_find(const struct mesh *mesh, const struct skin *skin,
   mesh_fill_faces(mesh, strain_rows(mesh), rows);
 }
 
+void strain_find_deviator(const struct mesh *mesh, double *const u[DIM],
+                          double *const rows[STRAIN_ROWS]) {
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      double grad[DIM][DIM];
+      face_gradient(mesh, d, f, u, grad);
+      set_rows(grad, d, f, rows);
+      const double hoop =
+          mesh_is_axisymmetric(mesh) ? mesh_face_hoop(mesh, u[0], f, d) : 0;
+      double trace = hoop;
+      for (int e = 0; e < DIM; e++) trace += grad[e][e];
+      rows[d][f] -= trace / 3;
+      if (DIM == 2) rows[STRAIN_HOOP][f] = hoop - trace / 3;
+    }
+  }
+  mesh_fill_faces(mesh, STRAIN_ROWS, rows);
+}
+
 void strain_divergence(const struct mesh *mesh, double *const s[],
                        double *const force[DIM]) {
   for (int e = 0; e < DIM; e++) {

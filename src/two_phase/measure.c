@@ -139,7 +139,7 @@ double diagnostics_flowing(struct two_phase *sim) {
   double sum[2] = {0}, *state;
   if (!sim->exact) return 1;
   state = MEM_NEW(double, mesh->nleaves);
-  yield_find_state(sim, state);
+  yield_find_state(&sim->yield, sim->c->v, state);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double grains = sim->c->v[i] * mesh_volume(mesh, i);
     sum[0] += grains * state[i];

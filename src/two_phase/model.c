@@ -91,7 +91,7 @@ static void outputs(struct model *model, bool make) {
   if (make) {
     closure_fields_update(sim);
     if (state) state->v = MEM_NEW(double, sim->grid.mesh->nleaves);
-    if (state) yield_find_state(sim, state->v);
+    if (state) yield_find_state(&sim->yield, sim->c->v, state->v);
   } else {
     closure_fields_release(sim);
     if (state) mem_free(state->v), state->v = NULL;

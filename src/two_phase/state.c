@@ -96,29 +96,6 @@ static struct field *add_kept_face(struct two_phase *sim, const char *name,
   return field;
 }
 
-/* Add the fields of an exact yield. */
-static void add_yield(struct two_phase *sim) {
-  static const char *const stress[] = {"stress_0", "stress_1", "stress_2",
-                                       "stress_3", "stress_4"};
-  static const char *const strain[] = {"strain_0", "strain_1", "strain_2",
-                                       "strain_3", "strain_4"};
-  static const char *const trend[] = {"strain_trend_0", "strain_trend_1",
-                                      "strain_trend_2", "strain_trend_3",
-                                      "strain_trend_4"};
-  struct yield *yield = &sim->yield;
-  yield->nrows = strain_rows(sim->grid.mesh);
-  for (int k = 0; k < yield->nrows; k++) {
-    yield->s[k] =
-        add_kept_face(sim, stress[k], "Pa", "yield stress", &remap_faces);
-    yield->strain[k] =
-        add_kept_face(sim, strain[k], "1/s", "rate of strain", &remap_faces);
-    yield->trend[k] =
-        add_kept_face(sim, trend[k], "1/s^2", "its change", &remap_faces);
-  }
-  yield->tau_y = add_kept_face(sim, "yield_stress", "Pa",
-                               "bound of the yield stress", &remap_faces);
-}
-
 static void add_state(struct two_phase *sim) {
   static const char *const velocity[] = {"velocity_x", "velocity_y",
                                          "velocity_z"};
@@ -148,7 +125,8 @@ static void add_state(struct two_phase *sim) {
   const struct rheology *grains = &sim->params->grains.rheology;
   sim->exact =
       grains->regularisation == RHEOLOGY_EXACT && rheology_yields(grains);
-  if (sim->exact) add_yield(sim);
+  if (sim->exact)
+    yield_add(&sim->yield, &sim->grid.fields, &sim->grid.mesh, false);
 }
 
 static struct field *add_face(struct two_phase *sim, const char *name) {
@@ -217,7 +195,12 @@ static void add_scratch(struct two_phase *sim) {
   if (sim->params->side_walls.mu > 0) add_walls(sim);
   if (sim->params->permeable) add_percolation(sim);
   sim->eta_f = add_face(sim, "face_viscosity");
-  if (sim->exact) sim->yield.shear = add_face(sim, "face_shear");
+  if (sim->exact) {
+    sim->yield.shear = add_face(sim, "face_shear");
+    sim->yield.eta = sim->eta_f;
+    sim->yield.scratch = &sim->scratch;
+    sim->yield.skin = &sim->skin;
+  }
   sim->alpha_f = add_face(sim, "face_specific_volume");
   sim->gravity_f = add_face(sim, "face_gravity");
   sim->u_half = add_face(sim, "face_half");

@@ -81,6 +81,7 @@
 #include "talus/two_phase/still.h"
 #include "talus/two_phase/time_step.h"
 #include "talus/two_phase/viscous_work.h"
+#include "talus/two_phase/yield_faces.h"
 #include "talus/viscous.h"
 #include "talus/vof.h"
 
@@ -231,7 +232,7 @@ static void update_viscosity(struct two_phase *sim,
   fill_pressure(sim);
   if (sim->exact) {
     scratch_give(&sim->scratch, __func__);
-    yield_update(sim, u);
+    yield_faces_update(sim, u);
     return;
   }
   strain_shear_rate(mesh, sim->skin, u, work[0]);
@@ -449,19 +450,20 @@ static void solve_yield(struct two_phase *sim, double dt, int repetition,
   for (; k < MOST_SOLVES && mismatch > (k == 1 ? UNFIT : FIT); k++) {
     const struct solve_stats before = sim->viscous;
     const bool again = k > 0 || repetition > 0;
-    yield_linearise(sim, again ? 0 : dt, r, eta, full);
+    yield_linearise(&sim->yield, again ? 0 : dt, r, eta, full);
     for (int e = 0; e < DIM; e++) {
       for (int32_t i = 0; i < mesh->nleaves; i++) {
         full[e][i] = rhs[e][i] + dt * full[e][i];
       }
     }
     sim->viscous = solve_viscous(sim, dt, mass, eta, full, bc, u);
-    mismatch = yield_advance(sim, dt, r, eta, u, again);
+    mismatch = yield_advance(&sim->yield, dt, r, eta, u, again);
     if (k > 0) add_solve(&sim->viscous, &before);
   }
   scratch_give(&sim->scratch, __func__);
   if (k == MOST_SOLVES && mismatch > FIT) {
-    yield_say_misfit(sim, k, mismatch, FIT, UNFIT);
+    yield_say_misfit(&sim->yield, (long long)sim->model.step, k, mismatch, FIT,
+                     UNFIT);
   }
 }
 

@@ -8,7 +8,6 @@
 #include "talus/poisson.h"
 #include "talus/projection.h"
 #include "talus/two_phase/state.h"
-#include "talus/two_phase/yield.h"
 
 /* Still grains are slower than this part of what gravity gives in a step. */
 #define SLOW 0.1

@@ -14,7 +14,7 @@
  * first order, up to 4 % here. With the centre a heap would rest on a cushion
  * of gas and never stop (a_heap_less_steep_than_friction_rests, test_step.c).
  * "exact": with a yield stress of 1e-12 of the moving wall's, so that the
- * layers are mixed as an exact yield does it (two_phase/yield.h).
+ * layers are mixed as an exact yield does it (two_phase/yield_faces.h).
  *
  * Stripes at 45 degrees in a doubly periodic box, the viscous solver alone:
  * stiff for |s - s_0| < W/2, s = x - y of period 1, driven along (1, 1) by

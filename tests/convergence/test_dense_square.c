@@ -21,7 +21,7 @@
  * Before the grains beside the surface were kept from feeling the velocity
  * gradient of the gas (skin.h) it was 4.3e-2, 2.5e-2, 2.3e-2. "exact": with a
  * yield stress of 1e-9 rho U^2, so that grains and gas are mixed as an exact
- * yield does it (two_phase/yield.h). */
+ * yield does it (two_phase/yield_faces.h). */
 #include "dense_body.h"
 
 static void run(struct report *report) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Layers that stop, with an exact yield (two_phase/yield.h), one viscous solve
+/* Layers that stop, with an exact yield (yield.h), one viscous solve
  * a step; depth 1 in 32 cells on a slope, rho = g = 1, no slip below.
  *
  * Coulomb: mu = 0.38, 10 degrees, u = y at first. Where it moves it loses k =

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "talus/two_phase/yield.h"
+#include "talus/yield.h"
 
 #include <check.h>
 #include <math.h>
 
 #include "sim.h"
 #include "talus/strain.h"
+#include "talus/two_phase/yield_faces.h"
 
 Suite *yield_suite(void);
 
@@ -196,9 +197,9 @@ END_TEST
 START_TEST(a_bad_misfit_is_told_once) {
   struct params p = heap_params(false);
   struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
-  yield_say_misfit(sim, 8, 0.01, 0.001, 0.02);
+  yield_say_misfit(&sim->yield, 0, 8, 0.01, 0.001, 0.02);
   const int fair = sim->yield.misfits;
-  yield_say_misfit(sim, 8, 0.03, 0.001, 0.02);
+  yield_say_misfit(&sim->yield, 0, 8, 0.03, 0.001, 0.02);
   const int bad = sim->yield.misfits;
   two_phase_destroy(sim);
   ck_assert_int_eq(fair, 0);
@@ -310,7 +311,7 @@ static struct two_phase *flat_grains(const struct params *p) {
                       (const struct bc *[]){sim->p->bc}, false);
   double *u[DIM];
   field_arrays(sim->u, u);
-  yield_update(sim, u);
+  yield_faces_update(sim, u);
   return sim;
 }
 
@@ -409,7 +410,7 @@ START_TEST(a_jolt_lets_grains_yield) {
     sim->yield.shear->v[f] = _i ? 1e3 : 1;
   }
   sim->yield.gamma_r = 1e-3;
-  yield_linearise(sim, 0.1, r, eta, force);
+  yield_linearise(&sim->yield, 0.1, r, eta, force);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const double want = 1 + (_i ? 1e-3 : r[f]);
     worst = larger(worst, fabs(eta[f] / want - 1));
@@ -443,7 +444,7 @@ START_TEST(a_still_face_in_a_flow_is_as_soft_as_the_others) {
       sim->yield.strain[other]->v[f] = f == 0 ? 0 : 2;
   }
   sim->yield.gamma_r = 1e-3;
-  yield_linearise(sim, 0.1, r, eta, force);
+  yield_linearise(&sim->yield, 0.1, r, eta, force);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const double scaled = r[f] / sim->yield.tau_y->v[f];
     if (sim->yield.tau_y->v[f] == 0) continue;
@@ -493,8 +494,8 @@ START_TEST(a_flow_that_goes_on_has_no_mismatch) {
   }
   field_fill_many(mesh, DIM, sim->u);
   for (int k = 0; k < 20; k++) {
-    yield_linearise(sim, 0, r, eta, force);
-    last = yield_advance(sim, 0.1, r, eta, u, k > 0);
+    yield_linearise(&sim->yield, 0, r, eta, force);
+    last = yield_advance(&sim->yield, 0.1, r, eta, u, k > 0);
     if (k == 0) first = last;
   }
   for (int e = 0; e < DIM; e++) mem_free(force[e]);

@@ -17,7 +17,7 @@
 #include "talus/solve.h"
 #include "talus/two_phase/conditions.h"
 #include "talus/two_phase/percolation.h"
-#include "talus/two_phase/yield.h"
+#include "talus/yield.h"
 
 enum { TWO_PHASE_MAX_KNOWN = 8 };
 

@@ -31,63 +31,71 @@
  * happens to vanish need no spring so stiff: alone among soft faces, it would
  * cost the solver many iterations.
  *
- * Grains and gas act side by side on a face, of which the part a is wet (by the
- * planes of its leaves):
- *   eta = a eta_1 + (1 - a) eta_2,  tau_y = a (tau_y1(p_f) + cohesion).
- * On a dry face, a = 0, eta_2 is that of the gas in series with the grains on
- * its line (properties.h); so it is on a wet face with gas on its
- * line, beyond which a leaf moves with the gas. Grains touch what a film
- * of gas keeps them from: in a leaf with a part c' < 0.1 of gas a is at least 1
- * - 10 c' (of both leaves). The face that carries a cut leaf bears at least the
- * weight of its grains, p_f >= c rho_1 |g_d| h/a.
- *
- * u_f, which carries c, is not that of the projection: it would leave dt (a_f -
- * mean g_c), which does not vanish at rest. It is the solenoidal part of the
- * mean of u^{n+1} on both sides.
- */
-#ifndef TALUS_TWO_PHASE_YIELD_H
-#define TALUS_TWO_PHASE_YIELD_H
+ * D is that of a flow that keeps its volume, or its deviator where grains
+ * change theirs. A model sets eta and tau_y of faces and what the struct below
+ * borrows. */
+#ifndef TALUS_YIELD_H
+#define TALUS_YIELD_H
 
 #include <stdbool.h>
 
 #include "talus/field.h"
 #include "talus/strain.h"
 
-struct two_phase;
+struct params;
+struct scratch;
+struct skin;
 
 struct yield {
+  /* Borrowed */
+  struct mesh *const *mesh;  /* that of the fields */
+  struct scratch *scratch;   /* nrows + 1 arrays on faces */
+  struct skin *const *skin;  /* beside the surface (skin.h); NULL: none */
+  const struct field *eta;   /* plastic viscosity of faces, Pa s, filled */
+  const struct field *shear; /* sqrt(2 D:D) of u^n on faces, 1/s */
+
+  bool compressible;            /* D is the deviator */
   int nrows;                    /* of the tensors below (strain.h) */
   struct field *s[STRAIN_ROWS]; /* yield stress, Pa; kept */
   struct field *strain[STRAIN_ROWS], *trend[STRAIN_ROWS]; /* D, 1/s, and its
                                   change, 1/s^2; kept */
   struct field *tau_y;                                    /* Pa; kept */
-  struct field *still; /* 1 in leaves at rest, 0 in those that move (still.h) */
-  struct field *shear; /* sqrt(2 D:D) of u^n on faces, 1/s */
+  struct field *still; /* 1 in leaves at rest, 0 in those that move
+                          (two_phase/still.h) */
   struct field *state; /* yield_state of snapshots, on demand */
   double gamma_r;      /* 1/s */
   int misfits;         /* steps whose solves ended above the bad mismatch */
 };
 
-/* Set eta_f, tau_y and gamma_r from the velocity, which is filled, and p. */
-void yield_update(struct two_phase *sim, double *const u[DIM]);
+/* Add the fields that are kept, on *mesh. */
+void yield_add(struct yield *yield, struct fields *fields,
+               struct mesh *const *mesh, bool compressible);
+/* Return the least shear rate, 1/s, that closures are to be asked for, for a
+ * flow whose fastest speed is `speed`, m/s. */
+double yield_least_rate(const struct params *params, double speed);
+/* Set gamma_r from tau_y of grains of a density less buoyancy, kg/m^3, and the
+ * fastest speed of all ranks. Collective. */
+void yield_set_rate(struct yield *yield, const struct params *params,
+                    double density, double speed);
 /* Set r [nfaces_all], the viscosity eta [nfaces_all] of a solve over dt and the
  * force div(m s^n) that it needs besides, force[e] [nleaves]. Collective. */
-void yield_linearise(struct two_phase *sim, double dt, double *r, double *eta,
-                     double *const force[DIM]);
+void yield_linearise(const struct yield *yield, double dt, double *r,
+                     double *eta, double *const force[DIM]);
 /* Return whether the stress at face f of axis d has reached a yield stress. */
 bool yield_is_reached(const struct yield *yield, int d, int32_t f);
 /* Set state [nleaves] to the part of the sides of a leaf whose stress has
- * reached the yield stress: 0 where grains are held, 1 where they flow, 0 in
- * gas. Collective. */
-void yield_find_state(struct two_phase *sim, double *state);
+ * reached the yield stress: 0 where grains are held, 1 where they flow, 0 where
+ * grains fill less than half, part [nleaves]. Collective. */
+void yield_find_state(const struct yield *yield, const double *part,
+                      double *state);
 /* Take D of the solution u, which is filled, and the stress that goes with it;
  * r, eta: of yield_linearise. again: the step has had a solve before. Returns
  * the mismatch, 0 of a flow that goes on. Collective. */
-double yield_advance(struct two_phase *sim, double dt, const double *r,
+double yield_advance(const struct yield *yield, double dt, const double *r,
                      const double *eta, double *const u[DIM], bool again);
 /* Say in run.log that a step ended with a mismatch above what is wanted, and
  * once in a run, to the user, that one did above `bad`. */
-void yield_say_misfit(struct two_phase *sim, int solves, double mismatch,
-                      double want, double bad);
+void yield_say_misfit(struct yield *yield, long long step, int solves,
+                      double mismatch, double want, double bad);
 
 #endif
