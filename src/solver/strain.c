@@ -90,7 +90,11 @@ void strain_sliding_rate(const struct mesh *mesh, double *const u[DIM],
       double grad[DIM][DIM], div = 0;
       face_gradient(mesh, d, f, u, grad);
       for (int e = 0; e < DIM; e++) div += grad[e][e];
-      const double squared = shear_squared(grad) - 2 * div * div;
+      const double hoop =
+          mesh_is_axisymmetric(mesh) ? mesh_face_hoop(mesh, u[0], f, d) : 0;
+      div += hoop;
+      const double squared =
+          shear_squared(grad) + 2 * hoop * hoop - 2 * div * div;
       slide_f[f] = squared > 0 ? sqrt(squared) : 0;
     }
   }

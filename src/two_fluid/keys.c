@@ -67,9 +67,8 @@ static const struct key KEYS[] = {
 };
 /* clang-format on */
 
-/* Keys that the model does not know yet; nothing of it has been tried in rings.
- */
-static const char *const REFUSED[] = {"tracers", "coordinates", NULL};
+/* Keys that the model does not know yet. */
+static const char *const REFUSED[] = {"tracers", NULL};
 
 _Static_assert(TWO_FLUID_GRAINS_DENSITY == 0 && CLOSURE(set) == 0,
                "offsets of two_fluid_numbers are those of struct "

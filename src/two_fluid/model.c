@@ -130,6 +130,11 @@ enum {
   NCOLUMNS
 };
 
+/* In axisymmetric coordinates those of the whole turn around the axis. */
+#define VOLUME_UNIT "m^2 (3D, axisymmetric: m^3)"
+#define ENERGY_UNIT "J/m (3D, axisymmetric: J)"
+#define MOMENTUM_UNIT "kg/s (3D, axisymmetric: kg m/s)"
+
 /* clang-format off */
 static const struct column COLUMNS[NCOLUMNS] = {
     [STEP] = {"step", COLUMN_INTEGER, "", "number of the step; 0 is the start"},
@@ -137,24 +142,25 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [DT] = {"dt", COLUMN_REAL, "s", "its length"},
     [CELLS] = {"cells", COLUMN_INTEGER, "", "leaves of the tree"},
     [FRONT] = {"front", COLUMN_SHORT, "m",
-               "where the contour alpha = alpha_surface ends, its x (3D: "
-               "distance from the lower edge of the box)"},
+               "where the contour alpha = alpha_surface ends, its x (3D and "
+               "axisymmetric: distance from the lower edge of the box)"},
     [HEIGHT] = {"height", COLUMN_SHORT, "m", "of that contour"},
     [GRAIN_FRONT] = {"grain_front", COLUMN_SHORT, "m",
                      "where the solid volume per area over alpha_start falls "
                      "below half a grain"},
     [GRAIN_HEIGHT] = {"grain_height", COLUMN_SHORT, "m",
                       "largest solid volume per area over alpha_start"},
-    [VOLUME] = {"volume", COLUMN_REAL, "m^2 (3D: m^3)", "of the grains alone"},
-    [FLUID_VOLUME] = {"fluid_volume", COLUMN_REAL, "m^2 (3D: m^3)", "of the fluid"},
-    [MOMENTUM_X] = {"momentum_x", COLUMN_SHORT, "kg/s (3D: kg m/s)", "of both"},
-    [MOMENTUM_Y] = {"momentum_y", COLUMN_SHORT, "kg/s (3D: kg m/s)", "likewise"},
+    [VOLUME] = {"volume", COLUMN_REAL, VOLUME_UNIT, "of the grains alone"},
+    [FLUID_VOLUME] = {"fluid_volume", COLUMN_REAL, VOLUME_UNIT, "of the fluid"},
+    [MOMENTUM_X] = {"momentum_x", COLUMN_SHORT, MOMENTUM_UNIT,
+                    "of both; radial where axisymmetric, and not kept"},
+    [MOMENTUM_Y] = {"momentum_y", COLUMN_SHORT, MOMENTUM_UNIT, "likewise"},
     [MOMENTUM_Z] = {"momentum_z", COLUMN_SHORT, "kg m/s", "likewise; 0 in 2D"},
-    [KINETIC] = {"kinetic", COLUMN_SHORT, "J/m (3D: J)", "energy of the grains"},
-    [FLUID_KINETIC] = {"fluid_kinetic", COLUMN_SHORT, "J/m (3D: J)", "energy of the fluid"},
-    [POTENTIAL] = {"potential", COLUMN_SHORT, "J/m (3D: J)",
+    [KINETIC] = {"kinetic", COLUMN_SHORT, ENERGY_UNIT, "energy of the grains"},
+    [FLUID_KINETIC] = {"fluid_kinetic", COLUMN_SHORT, ENERGY_UNIT, "energy of the fluid"},
+    [POTENTIAL] = {"potential", COLUMN_SHORT, ENERGY_UNIT,
                    "energy of the grains, less buoyancy"},
-    [LOST] = {"lost", COLUMN_SHORT, "J/m (3D: J)",
+    [LOST] = {"lost", COLUMN_SHORT, ENERGY_UNIT,
               "what these three miss of the start: friction, drag, viscosity "
               "and the scheme"},
     [MAX_FLUX] = {"max_flux", COLUMN_SHORT, "m/s",

@@ -27,10 +27,10 @@ static double rate_of(const struct two_fluid *sim, int32_t i, double alpha,
 /* Return that of the fluid, whose flux is j less that of the grains. */
 static double fluid_rate(const struct two_fluid *sim, int32_t i) {
   const struct mesh *mesh = sim->grid.mesh;
-  const int32_t *face = mesh->cell_face[i];
   double sum = 0;
   for (int s = 0; s < NFACE; s++)
-    sum += fabs(sim->j->v[face[s]] - sim->flux->v[face[s]]);
+    sum += fabs(mesh_side(mesh, sim->j->v, i, s) -
+                mesh_side(mesh, sim->flux->v, i, s));
   return 0.5 * sum / (mesh_width(mesh, i) * (1 - sim->alpha->v[i]));
 }
 

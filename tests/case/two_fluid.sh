@@ -75,9 +75,6 @@ sed 's/top = "slip"/top = { "inflow", velocity = { 0, -1 }, fraction = 0.5 }/' \
   cliff.lua > in.lua
 ends 2 "$talus" run in.lua -o wrong
 says 'only fluid passes the sides'
-sed 's/dimension = /coordinates = "axisymmetric", &/' cliff.lua > ring.lua
-ends 2 "$talus" check ring.lua
-says 'coordinates = "axisymmetric" is a key of model'
 sed 's/d = 1e-3/d = 1e-3, rho_d = 2/' cliff.lua > key.lua
 ends 2 "$talus" check key.lua
 says 'rho_d'
@@ -95,6 +92,20 @@ for dense in 0 1; do
     stop=0.2 -o calm$dense --quiet
   grep -q burst output && complain "a run that makes no energy is warned of"
 done
+
+# rings: restart and ranks
+sed 's/dimension = /coordinates = "axisymmetric", &/' cliff.lua > ring.lua
+ends 0 "$talus" run ring.lua -o rings --quiet
+ends 5 "$talus" run ring.lua -o rings_parts --quiet --max-steps 9
+ends 0 "$talus" run ring.lua -o rings_parts --quiet --restart
+diff <(numbers rings) <(numbers rings_parts) > output ||
+  complain "a restart changes series.csv in rings"
+ends 0 mpirun --oversubscribe -n 3 "$build/talus2d" run ring.lua \
+  -o rings_ranks --quiet
+paste -d, <(tail -n 1 rings/series.csv | cut -d, -f5) \
+  <(tail -n 1 rings_ranks/series.csv | cut -d, -f5) |
+  awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
+  complain "three ranks have another front in rings"
 
 # with the surface in closures and fluxes: restart and ranks
 sed 's/alpha_start = phi,/&  surface = "planes",/' cliff.lua > planes.lua

@@ -156,7 +156,8 @@ START_TEST(linear_flow_has_its_strain) {
   static const char *const names[] = {"u", "v", "w"};
   struct bench *b = bench_on(rings(kInner[_i], 2, 5));
   struct field *u[DIM], *shear = bench_face(b, "shear");
-  double *v[DIM], *rows[STRAIN_ROWS], hoop = 0, rate = 0, norm = 0;
+  struct field *slide = bench_face(b, "slide");
+  double *v[DIM], slip = 0, *rows[STRAIN_ROWS], hoop = 0, rate = 0, norm = 0;
   bench_vector(b, names, u), field_arrays(u, v);
   fill_linear(b, u);
   const int n = strain_rows(b->mesh);
@@ -164,6 +165,8 @@ START_TEST(linear_flow_has_its_strain) {
     rows[k] = MEM_NEW(double, b->mesh->nfaces_all);
   strain_find(b->mesh, NULL, v, rows);
   strain_shear_rate(b->mesh, NULL, v, shear->v);
+  for (int32_t i = 0; i < b->mesh->ncells; i++) v[1][i] *= -5;
+  strain_sliding_rate(b->mesh, v, slide->v);
   ck_assert_int_eq(n, 3);
   fill_cells(b->mesh, stagnation, u); /* without trace */
   for (int32_t f = 0; f < b->mesh->nfaces; f++) {
@@ -172,11 +175,15 @@ START_TEST(linear_flow_has_its_strain) {
     rate =
         larger(rate, fabs(shear->v[f] - sqrt(2 * (2 * 1.3 * 1.3 + 0.4 * 0.4))));
     norm = strain_norm_squared(3, row, 0, 0);
+    /* of diag(1.3, -2, 1.3) */
+    slip = larger(slip, fabs(slide->v[f] - sqrt(14.04)));
   }
   for (int k = 0; k < STRAIN_ROWS; k++) mem_free(rows[k]);
   hoop = mesh_max(b->mesh, hoop), rate = mesh_max(b->mesh, rate);
+  slip = mesh_max(b->mesh, slip);
   bench_destroy(b);
   ck_assert_double_le(hoop, 1e-13);
+  ck_assert_double_le(slip, 1e-12);
   ck_assert_double_le(rate, 1e-12);
   ck_assert_double_eq(norm, 3); /* (1 + 1 + 4)/2 of diag(1, 1, -2) */
 }
