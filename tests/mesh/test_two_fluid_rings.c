@@ -50,12 +50,12 @@ START_TEST(a_settled_bed_rests) {
 }
 END_TEST
 
-/* A cylinder collapses on a grid that follows it, and keeps its mass. */
 static double cylinder(void *context, const double x[3]) {
   (void)context;
   return fmin(0.05 - x[0], 0.06 - x[1]);
 }
 
+/* A cylinder collapses on a grid that follows it, and keeps its mass. */
 START_TEST(a_cylinder_keeps_its_mass) {
   struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_WATER);
   struct two_fluid_measures before, after;
@@ -118,8 +118,7 @@ START_TEST(momentum_along_the_axis_stays) {
 }
 END_TEST
 
-/* The flow u = s (r, -2 z) carries itself: u.grad u = s^2 (r, 4 z), with an
- * error of h^2/(4 r), as a leaf has its mean at its centre. */
+/* Return u/s of the flow u = s (r, -2 z). */
 static double linear(int e, const double x[3]) {
   return e == 0 ? x[0] : -2 * x[1];
 }
@@ -145,6 +144,8 @@ static void set_linear(struct two_fluid *sim, double s) {
   field_fill_faces(mesh, sim->flux);
 }
 
+/* A linear flow carries itself by u.grad u = s^2 (r, 4 z), with an error of
+ * h^2/(4 r), as a leaf has its mean at its centre. */
 START_TEST(a_linear_flow_carries_itself) {
   const double s = 3, dt = 1e-5;
   struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_WATER);
