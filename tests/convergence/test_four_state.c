@@ -18,27 +18,32 @@
 
 static const char kBeads[] = "examples/reference/discrete_case2.csv";
 
-/* Ask for fine leaves below 3 cm and above 7 cm. */
-static double jumps(void *context, const double x[3]) {
+/* Ask for fine leaves above 7 cm and below 3 cm, or in the left half. */
+static double above(void *context, const double x[3]) {
   (void)context;
   return x[DIM - 1] < 0.03 || x[DIM - 1] > 0.07 ? 5 : 4;
 }
+static double beside(void *context, const double x[3]) {
+  (void)context;
+  return x[0] < 0.08 || x[DIM - 1] > 0.07 ? 5 : 4;
+}
 
-static void report_rest(struct report *report, bool adapted) {
+/* Levels jump as `jumps` asks, or not at all. */
+static void report_rest(struct report *report, const char *grid,
+                        double (*jumps)(void *, const double *)) {
   double z[] = {-1, 0.1};
   struct four_state_keys keys = four_state_defaults();
   struct params p = beads_params(&keys, 5);
   p.shape = (struct function){slab, z};
   p.tolerance_pressure = 1e-8, p.tolerance_viscous = 1e-12;
-  if (adapted) {
+  if (jumps) {
     p.level_min = 4;
     p.criterion[p.ncriteria++] = (struct criterion){
         .type = CRITERION_FUNCTION, .level = 5, .function = {jumps, NULL}};
   }
   struct four_state *sim = beads_new(&p);
   const bool good = beads_run(sim, 1, 100000);
-  report_at_most(report, adapted ? "adapted" : "uniform",
-                 "speed of a layer at rest over sqrt(g H)", 5,
+  report_at_most(report, grid, "speed of a layer at rest over sqrt(g H)", 5,
                  good ? beads_speed(sim) / sqrt(9.81 * 0.1) : NAN, 1e-10);
   four_state_destroy(sim);
 }
@@ -228,8 +233,9 @@ static void report_column(struct report *report) {
 }
 
 static void run(struct report *report) {
-  report_rest(report, false);
-  report_rest(report, true);
+  report_rest(report, "uniform", NULL);
+  report_rest(report, "level jumps above each other", above);
+  report_rest(report, "level jumps side by side", beside);
   report_heap(report, 6);
   report_heap(report, 7);
   report_column(report);

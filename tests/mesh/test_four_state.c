@@ -34,8 +34,9 @@ static struct params with_levels(struct params p, int which) {
 
 /* In balance nothing moves: the bar is 1e-10 sqrt(g H). Surfaces on faces and
  * between them. Where levels jump along the layer, p of virtual children lies
- * on a line and that of the layer does not quite; the difference is held by
- * friction, which creeps at up to 1.5e-9 m/s. From 6 on in rings. */
+ * on a line and that of the layer does not quite: 1e-5 of p, until friction and
+ * packing hold the difference (1e-10 after 0.27 s, 2e-11 after 1 s: make
+ * convergence CASE=four_state). From 6 on in rings. */
 START_TEST(a_layer_in_balance_rests) {
   static const double top[] = {0.1, 0.1017};
   double z[] = {-1, top[_i % 2]};
