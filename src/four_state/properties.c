@@ -208,3 +208,17 @@ void four_state_face_velocity(const struct four_state *sim, double *const u[],
     }
   }
 }
+
+void four_state_accelerate_faces(const struct four_state *sim, double dt,
+                                 const double *a_f, const double *start_f,
+                                 double *u_f) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int d = 0; d < DIM; d++) {
+    const double fall = dt * sim->params->gravity[d];
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      if (mesh->face_patch[f] >= 0) continue;
+      u_f[f] += dt * a_f[f];
+      u_f[f] -= 0.5 * minmod(u_f[f] - start_f[f], fall);
+    }
+  }
+}

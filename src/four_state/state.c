@@ -95,7 +95,7 @@ static void add_made(struct four_state *sim) {
   sim->u_f = add_face(sim, "face_velocity");
   sim->flux = add_face(sim, "face_flux");
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, 2 * DIM + 4,
-               DIM + 3);
+               DIM + 4);
 }
 
 struct four_state *four_state_new_on(const struct params *params,

