@@ -6,10 +6,11 @@
 #include "talus/four_state/state.h"
 #include "talus/minmax.h"
 
-/* dt is at most this times sqrt(h/|g|) of the finest leaves, and grows by at
- * most a factor of DT_GROWTH from step to step. */
+/* dt is at most this times sqrt(h/|g|) of the finest leaves, grows by at most a
+ * factor of DT_GROWTH from step to step, and begins with DT_FIRST of that. */
 #define DT_ACCELERATION 0.0625
 #define DT_GROWTH 1.2
+#define DT_FIRST 0.01
 
 /* Return the largest sum over axes of |u|/h of leaves with grains. */
 static double flow_rate(const struct four_state *sim) {
@@ -32,7 +33,7 @@ double four_state_time_step(const struct four_state *sim, double dt_max) {
   if (g2 > 0) dt = min2(dt, DT_ACCELERATION * sqrt(h / sqrt(g2)));
   const double rate = flow_rate(sim);
   if (rate > 0) dt = min2(dt, params->cfl / rate);
-  if (sim->model.dt > 0) dt = min2(dt, DT_GROWTH * sim->model.dt);
+  dt = sim->model.dt > 0 ? min2(dt, DT_GROWTH * sim->model.dt) : DT_FIRST * dt;
   return dt < dt_max && dt_max < 2 * dt ? 0.5 * dt_max : dt;
 }
 

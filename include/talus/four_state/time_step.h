@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The length of a step: grains move less than cfl of a leaf, and while they set
- * off less than what they fall in 1/16 sqrt(h/g). Sound, viscosity and
+ * off less than what they fall in 1/16 sqrt(h/g). The first step is short: in
+ * it p goes from that of rest to that of the flow, and predicted with the
+ * former columns start late (docs/notes/four_state.md). Sound, viscosity and
  * collisions do not bound dt. */
 #ifndef TALUS_FOUR_STATE_TIME_STEP_H
 #define TALUS_FOUR_STATE_TIME_STEP_H
