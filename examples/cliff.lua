@@ -3,8 +3,8 @@
 -- Question. A cliff of sand stands in a fluid and its gate goes. How does the
 -- fluid between the grains change how far it runs?
 --
--- Geometry. A cliff of length x_0 and height a x_0 at a smooth wall, in a box of
--- 4 x_0.
+-- Geometry. A cliff of length x_0 and height a x_0 at a smooth wall, in a box
+-- that is at least 4 x_0 high and `reach` long; gate=1 leaves the gate in place.
 --
 --      +----------------------+  4 x_0
 --      |fluid                 |
@@ -20,33 +20,55 @@
 --
 -- Source. B. Busch & S. T. Johansen, On the validity of the two-fluid-KTGF
 -- approach for dense gravity-driven granular flows as implemented in ANSYS Fluent
--- R17.2, Powder Technol. 364 (2020) 429, whose closures are closure="ktgf".
+-- R17.2, Powder Technol. 364 (2020) 429, whose closures are closure="ktgf". Its
+-- figures: tools/figure.py busch_johansen_2020.
 --
--- Cost. Level 6, 1 s: 330 steps in air, 170 in water, 5 to 8 s on one core.
+-- Cost. 16 leaves to x_0, 1 s: 330 steps in air, 170 in water, 5 to 8 s on one
+-- core.
 --
 -- Expect. After 1 s the front is at 2.46 x_0 in air and at 2.96 x_0 in water, and
 -- grains of the surface still creep by 2 cm/s: leaves of the surface have no
 -- strength yet (docs/notes/two_fluid.md).
 --
--- Try. fluid=water, fluid=pac4 d=1e-4 stop=20, a=2, closure=ktgf.
+-- Try. fluid=water, fluid=pac4 d=1e-4 stop=20, a=2, closure=ktgf,
+-- closure=mu_i_phi_i; surface=planes: a heap that stands.
 
 local fluid = param("fluid", "air", "air, water, pac2 or pac4")
 local a = param("a", 1, "height over length")
 local x_0 = param("x_0", 0.1, "length, m")
-local level = param("level", 6, "finest grid: 4 x_0/2^level")
+local cells = param("cells", 16, "finest leaves to x_0")
+local reach = param("reach", 4, "least length of the box, in x_0")
+local gate = param("gate", 0, "1: the gate stays, a bed from wall to wall")
 local stop = param("stop", 1, "time of the end, s")
+local eta_max = param("eta_max", 0, "cap on viscosity, Pa s; 0: by the height")
+
+-- the box is 4 x_0 high, or more, so that leaves are x_0/cells; with the gate a
+-- quarter as long
+local level = math.ceil(math.log(4 * cells, 2) - 1e-9)
+local high = 2^level / cells                       -- x_0
+local trees = { math.ceil(reach / high - 1e-9), 1 }
+if gate == 1 then level, trees = level - 2, { 1, 4 } end
+
+local outlines = {}                                -- s
+for k = 0, 10 do outlines[k + 1] = 0.1 * k * stop end
 
 return {
   title = "Collapse of a cliff of sand, fluid " .. fluid,
   model = "two_fluid",
   dimension = 2,
-  domain = { size = 4 * x_0, level = level, level_min = level - 2 },
+  domain = { size = high * x_0 / trees[2], trees = trees, level = level,
+             level_min = math.max(level - 2, 0) },
   gravity = { 0, -9.81 },
   grains = {
-    shape = function(x, y) return math.min(x_0 - x, a * x_0 - y) end,
+    shape = function(x, y)
+      if gate == 1 then return a * x_0 - y end
+      return math.min(x_0 - x, a * x_0 - y)
+    end,
     density = 2560, d = param("d", 1e-3, "grain diameter, m"),
     start = param("start", "settled", "settled, patched or dense"),
     alpha_start = param("alpha", 0.6, "solid fraction, unless settled"),
+    surface = param("surface", "none", "of the bed: none, planes"),
+    eta_max = eta_max,
   },
   fluid = fluid,
   closure = param("closure", "critical_state", "closures of the grains"),
@@ -55,9 +77,9 @@ return {
   adapt = { { "interface", width = 3 }, { "inside" } },
   solver = { tolerance = 1e-4, cfl = 0.5 },
   output = { stop = stop, length_scale = x_0, snapshot_every = stop / 10,
-             profile_times = { 0, 0.25 * stop, 0.5 * stop, stop } },
+             profile_times = outlines },
   expect = {
-    run = "level=5 stop=0.3",
-    front = { 0.20, 0.26 },             -- m; level 6: 0.219
+    run = "cells=8 stop=0.3",
+    front = { 0.20, 0.26 },             -- m; 16 leaves: 0.219
   },
 }

@@ -5,9 +5,9 @@
   tools/figure.py PAPER [FIGURE ...] [name=value ...] [-o DIR] [--cells N]
                   [--talus build/talus]
 
-PAPER is a module of tools/papers (lagree_staron_popinet_2011,
-lee_huang_chiew_2015, valette_2019); without a FIGURE its figures are listed,
-`all` draws all. The case is run as often as the figure needs, N cells to the
+PAPER is a module of tools/papers (busch_johansen_2020,
+lagree_staron_popinet_2011, lee_huang_chiew_2015, valette_2019); without a FIGURE
+its figures are listed, `all` draws all. The case is run as often as the figure needs, N cells to the
 half-width of the column (default: as the figure says); name=value holds for all
 runs, as in strip=0. DIR (default: PAPER.out) gets one directory per run, in
 `runs`, and for each figure

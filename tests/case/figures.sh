@@ -41,6 +41,21 @@ draw lee_huang_chiew_2015 8 --cells 4 -o lee ||
   grep -q 'MISSED' output || complain "figure 8 is not drawn"
 [ -s lee/fig8.png ] || complain "there is no lee/fig8.png"
 
+# A matrix of cases, of which words choose some; a run may fail.
+draw busch_johansen_2020 4 6 x_0=0.1 d=1e-3 a=1 stop=0.1 --cells 4 -o busch ||
+  grep -q 'MISSED' output || complain "figures 4 and 6 are not drawn"
+grep -q '^St of 1 mm in air  *556.3 .*kept$' output ||
+  complain "figure 4 has no Stokes number"
+grep -q '^runs that failed  *0 .*kept$' output || complain "runs failed"
+[ "$(wc -l < busch/fig6-runs.csv)" -eq 2 ] ||
+  complain "words do not choose one of the cases"
+[ -s busch/fig4.png ] && [ -s busch/fig6.png ] || complain "there is no picture"
+draw busch_johansen_2020 A.5 x_0=0.1 d=1e-3 stop=0.1 --cells 4 -o busch ||
+  complain "figure A.5 is not drawn"
+[ "$(ls busch/runs | wc -l)" -eq 1 ] || complain "figures share no run"
+draw busch_johansen_2020 6 x_0=0.3 --cells 4 -o busch &&
+  complain "a length that is not in the matrix is taken"
+
 draw valette_2019 99 && complain "figure 99 is drawn"
 grep -q "there is no figure '99'; those of the paper are 5, 6, " output ||
   complain "figure 99 is not refused"

@@ -80,7 +80,7 @@ ends 2 "$talus" check key.lua
 says 'rho_d'
 
 # grains of mu(I) and phi(I) hold a settled start
-ends 0 "$talus" run "$root/examples/cliff.lua" closure=mu_i_phi_i level=5 \
+ends 0 "$talus" run "$root/examples/cliff.lua" closure=mu_i_phi_i cells=8 \
   stop=0.2 -o gas --quiet
 grep -q burst output && complain "grains of mu_i_phi_i burst"
 

@@ -117,15 +117,17 @@ class Study:
         self.name, self.title = name, title
         print(f"\nfigure {name}: {title}")
 
-    def run(self, case, name, words):
-        """The directory of a run of examples/CASE.lua, called `name`."""
+    def run(self, case, name, words, may_fail=False):
+        """The directory of a run of examples/CASE.lua, called `name`; None if
+        it fails and may."""
         directory = self.output / "runs" / name
         directory.parent.mkdir(parents=True, exist_ok=True)
         given = {w.partition("=")[0] for w in self.words}
         words = [f"{k}={v}" for k, v in words.items() if k not in given]
-        run_cases.run_to_end(self.talus, EXAMPLES / f"{case}.lua",
-                             words + self.words, directory, name)
-        return directory
+        status = run_cases.run_to_end(
+            self.talus, EXAMPLES / f"{case}.lua", words + self.words,
+            directory, name, may_fail)
+        return directory if status == 0 else None
 
     def collapse(self, case, a, reach, cells, output, **physics):
         """The run of a column as tall as a whose grains stay below x = reach,
@@ -145,6 +147,7 @@ class Study:
         lines = table_text(rows)
         print(*lines, sep="\n")
         self.missed += sum(row.verdict() == "MISSED" for row in rows)
+        self.output.mkdir(parents=True, exist_ok=True)
         path = self.output / f"fig{self.name}.csv"
         with open(path, "w", newline="", encoding="utf-8") as f:
             writer = csv.writer(f, lineterminator="\n")
