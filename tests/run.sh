@@ -4,6 +4,9 @@
 #
 #   tests/run.sh BUILD GROUP...
 #
+# A group may be cut down to a part of it: mesh:3d/2, case:ends. What needs one
+# core only is run beside others, as many at once as there are cores.
+#
 #   format    clang-format 14 has nothing to change
 #   includes  tools/check_includes.py, check_prose.py, check_circles.py
 #   unit      BUILD/{2d,3d}/unit
@@ -130,26 +133,67 @@ group_includes() {
   run_one circles "${PYTHON:-python3}" tools/check_circles.py "$build"
 }
 
-group_unit() {
-  local d
-  for d in 2d 3d; do run_suite "unit $d" "$build/$d/unit"; done
+# at_once GROUP...: each in a process of its own, their lines when it ends.
+# They must not tidy up each other's directories of Open MPI nor be bound to
+# one core, and ranks that wait leave it to others.
+at_once() {
+  local line scratch ended=0
+  scratch=$(mktemp -d)
+  while IFS= read -r line; do
+    if [[ $line =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]]; then
+      passed=$((passed + BASH_REMATCH[1]))
+      failed=$((failed + BASH_REMATCH[2]))
+      ended=$((ended + 1))
+    else
+      echo "$line"
+    fi
+  done < <(printf '%s\n' "$@" |
+    OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none \
+    xargs -P "$(nproc)" -I {} bash -c '
+      export OMPI_MCA_orte_tmpdir_base=$(mktemp -d -p "$2")
+      lines=$(tests/run.sh "$0" "$1" 2>&1)
+      echo "$lines"' "$build" {} "$scratch")
+  rm -rf "$scratch"
+  [ $ended -eq $# ] && return
+  echo "$ended of $# ended: $*"
+  failed=$((failed + 1))
 }
 
+# group_unit [DIMENSION]
+group_unit() {
+  if [ -n "$1" ]; then
+    run_suite "unit $1" "$build/$1/unit"
+  else
+    at_once unit:2d unit:3d
+  fi
+}
+
+# group_mesh [DIMENSION/RANKS]
 group_mesh() {
   local d n
-  for d in 2d 3d; do
-    for n in ${RANKS:-1 2 3}; do
-      run_suite "mesh $d on $n" \
-        mpirun --oversubscribe -n "$n" "$build/$d/mesh"
-    done
+  if [ -n "$1" ]; then
+    d=${1%/*} n=${1#*/}
+    run_suite "mesh $d on $n" mpirun --oversubscribe -n "$n" "$build/$d/mesh"
+    return
+  fi
+  for n in ${RANKS:-1 2 3}; do
+    if [ "$n" -eq 1 ]; then
+      at_once mesh:3d/1 mesh:2d/1
+    else
+      for d in 2d 3d; do group_mesh "$d/$n"; done
+    fi
   done
 }
 
+# group_case [NAME]
 group_case() {
-  local f
-  for f in tests/case/*.sh; do
-    [ -e "$f" ] && run_one "case $(basename "$f" .sh)" bash "$f" "$build"
-  done
+  if [ -n "$1" ]; then
+    run_one "case $1" bash "tests/case/$1.sh" "$build"
+    return
+  fi
+  local f parts=()
+  for f in tests/case/*.sh; do parts+=("case:$(basename "$f" .sh)"); done
+  at_once "${parts[@]}"
 }
 
 group_examples() {
@@ -175,6 +219,10 @@ group_small() {
   for n in 1 2; do run_one "column on $n" run_few_steps "$n"; done
 }
 
-for group in "$@"; do "group_$group"; done
+for group in "$@"; do
+  part=
+  [[ $group == *:* ]] && part=${group#*:}
+  "group_${group%%:*}" "$part"
+done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
