@@ -12,7 +12,10 @@
  *
  * symmetric and an M-matrix, solved by poisson_solve. Where q < 0 grains
  * expand and nu <- nu + q/P'; where q > 0 they are compressed and nu <- P^-1(p
- * + q): P is convex, so nu never crosses a pole and no damping is needed. At
+ * + q): P is convex, so nu never crosses a pole and no damping is needed. Where
+ * grains begin to touch, P' is 0 and rises with a power of p: then p grows by a
+ * factor per iteration only, and P' is taken ahead (`ahead`); as R vanishes it
+ * is P' of nu again. At
  * the end nu is that of the fluxes, so that mass is kept to round-off.
  */
 #ifndef TALUS_GRANULAR_PRESSURE_H
@@ -58,6 +61,9 @@ struct granular_pressure {
                                the children of coarse leaves
                                (mesh_fill_potential) */
   double least_slope;       /* of P that is taken for P', Pa, > 0 */
+  double ahead;             /* part of the rise of p that would hold R of a leaf
+                               back alone, by which P' is taken ahead where
+                               grains are compressed; 0: P' of nu */
   double tolerance;         /* on max |R| */
   int max_newton, max_iterations;
   const struct granular_surface *surface; /* NULL: none */

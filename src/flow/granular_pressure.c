@@ -128,17 +128,42 @@ static void set_alpha(const struct granular_pressure *by, double dt,
   mesh_fill_faces(mesh, 1, (double *const[]){by->alpha});
 }
 
+/* Return by how much p of leaf i must rise to hold its R back without a change
+ * of nu or of its neighbours, Pa. */
+static double rise_alone(const struct granular_pressure *by, int32_t i) {
+  double sum = 0;
+  for (int s = 0; s < NFACE; s++) sum += mesh_side(by->mesh, by->alpha, i, s);
+  const double h = by->mesh->h[i];
+  return sum > 0 ? -by->rhs[i] * h * h / sum : 0;
+}
+
+/* Return P' of a leaf: where grains are compressed that hardly touch, that of a
+ * pressure ahead, as far as nu - R reaches. */
+static double slope_of(const struct granular_pressure *by, int32_t i, double nu,
+                       double p) {
+  const struct granular_material *m = &by->material;
+  const double linear = nu - by->rhs[i];
+  double slope, there;
+  m->pressure(m->context, i, nu, &slope);
+  slope = max2(slope, by->least_slope);
+  if (!(by->ahead > 0 && linear > nu)) return slope;
+  const double next = p + by->ahead * rise_alone(by, i);
+  if (!(next - p > slope * (linear - nu))) return slope;
+  double at = linear;
+  if (m->pressure(m->context, i, at, &there) > next)
+    at = m->solid_fraction(m->context, i, next, nu, linear);
+  m->pressure(m->context, i, at, &there);
+  return max2(slope, there);
+}
+
 /* Take a Newton step from nu, p. */
 static struct solve_stats newton(const struct granular_pressure *by,
                                  double size, double *nu, double *p) {
   const struct mesh *mesh = by->mesh;
   const struct granular_material *m = &by->material;
   double *q = by->change;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double slope;
-    m->pressure(m->context, i, nu[i], &slope);
-    by->mass[i] = 1 / max2(slope, by->least_slope);
-  }
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    by->mass[i] = 1 / slope_of(by, i, nu[i], p[i]);
   memset(q, 0, (size_t)mesh->ncells * sizeof *q);
   const double tolerance = max2(LINEAR_GAIN * size, 0.1 * by->tolerance);
   const struct solve_stats stats =

@@ -62,6 +62,9 @@ enum { RETRIES = 12, PICARD = 2, MOST_NEWTON = 30 };
 /* Grains may have this times the kinetic energy that is accounted for, which is
  * a bound: gravity alone makes sqrt(K) grow by sqrt(M/2) g dt at most. */
 #define BURST 1.05
+/* Part of a rise of pressure by which its slope is taken ahead
+ * (docs/notes/four_state.md). */
+#define AHEAD 0.1
 /* Slope of P over K where there is no pressure. */
 #define LEAST_SLOPE 1e-12
 /* Solid fractions below this count as this in the viscous equation. */
@@ -97,6 +100,7 @@ struct granular_pressure four_state_material(struct four_state *sim,
       .nu_old = sim->nu->v,
       .p_old = sim->p->v,
       .rho = sim->weight->v,
+      .ahead = AHEAD,
       .least_slope = LEAST_SLOPE * sim->closure.param[LEE_HUANG_K],
       .tolerance = PRESSURE_FACTOR * sim->params->tolerance_pressure,
       .max_newton = MOST_NEWTON,
