@@ -8,6 +8,13 @@
 
 #include "talus/error.h"
 
+enum {
+  MEM_SMALL_HEAD = 16,     /* keeps the alignment of calloc */
+  MEM_PAGE = 4096,         /* bytes after which lines of a cache repeat */
+  MEM_STAGGERED = 1 << 16, /* bytes of arrays that start in turn */
+  MEM_TURN = 11            /* lines from one to the next */
+};
+
 static int64_t live_blocks;
 
 void mem_begin(void) {
@@ -37,18 +44,50 @@ static void *fail_unless_allocated(void *p, size_t bytes) {
   return p;
 }
 
-/* Allocate a block on a cache line, contents undefined. */
+/* Return how far an array lies behind the start of its block. A block of whole
+ * pages starts at one place of a page, so that arrays that are read side by
+ * side would want the same few lines of a cache: theirs start on lines of a
+ * page in turn. */
+static size_t head_bytes(size_t bytes) {
+  static unsigned turn;
+  const size_t lines = MEM_PAGE / MEM_ALIGNMENT;
+  if (bytes < MEM_LARGE) return MEM_SMALL_HEAD;
+  if (bytes < MEM_STAGGERED) return MEM_ALIGNMENT;
+  return MEM_ALIGNMENT * (1 + MEM_TURN * turn++ % lines);
+}
+
+/* Write the length of its head before an array and return the array. */
+static void *array_of(void *block, size_t head) {
+  char *p = (char *)block + head;
+  memcpy(p - sizeof head, &head, sizeof head);
+  return p;
+}
+
+static size_t head_of(const void *p) {
+  size_t head;
+  memcpy(&head, (const char *)p - sizeof head, sizeof head);
+  return head;
+}
+
+static void *block_of(void *p) { return (char *)p - head_of(p); }
+
+/* Allocate an array on a cache line, contents undefined. */
 static void *alloc_aligned(size_t bytes) {
+  const size_t head = head_bytes(bytes);
   /* C11 wants a multiple of the alignment. */
-  size_t rounded = (bytes + MEM_ALIGNMENT - 1) / MEM_ALIGNMENT * MEM_ALIGNMENT;
-  return fail_unless_allocated(aligned_alloc(MEM_ALIGNMENT, rounded), bytes);
+  const size_t rounded =
+      (head + bytes + MEM_ALIGNMENT - 1) / MEM_ALIGNMENT * MEM_ALIGNMENT;
+  void *block =
+      fail_unless_allocated(aligned_alloc(MEM_ALIGNMENT, rounded), bytes);
+  return array_of(block, head);
 }
 
 void *mem_alloc(size_t count, size_t size) {
   size_t bytes = array_bytes(count, size);
   void *p;
   if (bytes < MEM_LARGE) {
-    p = fail_unless_allocated(calloc(bytes, 1), bytes);
+    const size_t head = head_bytes(bytes);
+    p = array_of(fail_unless_allocated(calloc(head + bytes, 1), bytes), head);
   } else {
     p = alloc_aligned(bytes);
     memset(p, 0, bytes);
@@ -59,20 +98,22 @@ void *mem_alloc(size_t count, size_t size) {
 
 void *mem_resize(void *p, size_t count, size_t size) {
   if (p == NULL) return mem_alloc(count, size);
-  size_t bytes = array_bytes(count, size);
-  void *q = fail_unless_allocated(realloc(p, bytes), bytes);
+  const size_t bytes = array_bytes(count, size), head = head_of(p);
+  void *block =
+      fail_unless_allocated(realloc(block_of(p), head + bytes), bytes);
+  void *q = (char *)block + head;
   if (bytes < MEM_LARGE || (uintptr_t)q % MEM_ALIGNMENT == 0) return q;
   /* realloc forgets the alignment of large blocks. */
   void *aligned = alloc_aligned(bytes);
   memcpy(aligned, q, bytes);
-  free(q);
+  free(block);
   return aligned;
 }
 
 void mem_free(void *p) {
   if (p == NULL) return;
   live_blocks--;
-  free(p);
+  free(block_of(p));
 }
 
 int64_t mem_live_blocks(void) { return live_blocks; }

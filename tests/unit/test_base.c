@@ -272,6 +272,20 @@ START_TEST(memory_resize_keeps_contents_and_alignment) {
 }
 END_TEST
 
+/* Eight lines of a page at one place are as many as a cache holds. */
+START_TEST(memory_starts_on_lines_in_turn) {
+  enum { NARRAYS = 32, LINES = 4096 / MEM_ALIGNMENT };
+  double *a[NARRAYS];
+  int starts[LINES] = {0};
+  for (int k = 0; k < NARRAYS; k++) {
+    a[k] = MEM_NEW(double, 1 << 18);
+    const size_t line = (uintptr_t)a[k] / MEM_ALIGNMENT % LINES;
+    ck_assert_int_lt(starts[line]++, 2);
+  }
+  for (int k = 0; k < NARRAYS; k++) mem_free(a[k]);
+}
+END_TEST
+
 START_TEST(memory_counts_live_blocks) {
   int64_t before = mem_live_blocks();
   void *a = mem_alloc(10, 1), *b = mem_alloc(100000, 1);
@@ -377,6 +391,7 @@ static TCase *memory_case(void) {
   tcase_add_test(tcase, memory_is_zeroed_and_aligned);
   tcase_add_test(tcase, memory_of_no_elements_has_an_address);
   tcase_add_test(tcase, memory_resize_keeps_contents_and_alignment);
+  tcase_add_test(tcase, memory_starts_on_lines_in_turn);
   tcase_add_test(tcase, memory_counts_live_blocks);
   tcase_add_test(tcase, memory_overflow_ends_with_4);
   return tcase;
