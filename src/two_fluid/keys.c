@@ -67,9 +67,6 @@ static const struct key KEYS[] = {
 };
 /* clang-format on */
 
-/* Keys that the model does not know yet. */
-static const char *const REFUSED[] = {"tracers", NULL};
-
 _Static_assert(TWO_FLUID_GRAINS_DENSITY == 0 && CLOSURE(set) == 0,
                "offsets of two_fluid_numbers are those of struct "
                "two_fluid_keys");
@@ -82,5 +79,4 @@ const struct model_keys two_fluid_model_keys = {
     /* but for the first, which is a key of all models */
     .more = two_fluid_numbers + 1,
     .nmore = TWO_FLUID_NKEYS - 1,
-    .own_size = sizeof(struct two_fluid_keys),
-    .refused = REFUSED};
+    .own_size = sizeof(struct two_fluid_keys)};

@@ -141,6 +141,24 @@ static void find_outline(const struct two_fluid *sim,
   mem_free(heap), mem_free(c);
 }
 
+void two_fluid_measure_layers(const struct two_fluid *sim, double **layer) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const size_t n = (size_t)mesh->nleaves;
+  bool *heap = MEM_NEW(bool, n);
+  double *c = MEM_NEW(double, n);
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    struct outline outline;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      heap[i] = true;
+      c[i] = sim->tracer[k]->v[i] * sim->alpha->v[i] / sim->keys->alpha_start;
+    }
+    outline_measure(mesh, c, heap, outline_axis(sim->params->gravity),
+                    &outline);
+    layer[k] = outline.height;
+  }
+  mem_free(heap), mem_free(c);
+}
+
 static void find_extremes(const struct two_fluid *sim,
                           struct two_fluid_measures *m) {
   const struct mesh *mesh = sim->grid.mesh;

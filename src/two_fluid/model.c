@@ -269,6 +269,7 @@ static void measure(struct model *model, double value[],
   if (outline) {
     memset(outline, 0, sizeof *outline);
     outline->outline = m.outline;
+    two_fluid_measure_layers(sim, outline->layer);
   } else {
     outline_free(&m.outline);
   }

@@ -58,31 +58,52 @@ static void fill_leaf(struct two_fluid *sim, const struct filling *by,
   sim->alpha->v[i] = c * alpha;
 }
 
-static void fill_state(struct two_fluid *sim, const struct filling *by) {
-  const struct params *params = sim->params;
+/* Set `part` of leaves to that which is inside a shape, 1 without one. */
+static void fill_part(const struct two_fluid *sim, int fineness,
+                      const struct function *shape, double *part) {
   const struct mesh *mesh = sim->grid.mesh;
   double (*fraction)(shape_level_set f, void *context, const double centre[DIM],
                      double h, int depth) =
       mesh_is_axisymmetric(mesh) ? shape_ring_fraction : shape_fraction;
-  struct shape_memory *memory =
-      shape_memory_new(params->shape.eval, params->shape.context);
+  struct shape_memory *memory = shape_memory_new(shape->eval, shape->context);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    int depth = sim->params->level_max - mesh->level[i] + fineness;
+    if (depth > 6) depth = 6;
+    part[i] = shape->eval ? fraction(shape_memory_value, memory, mesh->x[i],
+                                     mesh->h[i], depth)
+                          : 1;
+  }
+  shape_memory_destroy(memory);
+}
+
+/* Set the part of the grains that is in each tracer, of grains that fill c. */
+static void fill_tracers(struct two_fluid *sim, int fineness, const double *c) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    double *part = sim->tracer[k]->v;
+    fill_part(sim, fineness, &sim->params->tracer[k].shape, part);
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      part[i] = c[i] > 0 ? min2(part[i] / c[i], 1) : 0;
+    mesh_touch(mesh, part);
+  }
+}
+
+static void fill_state(struct two_fluid *sim, const struct filling *by) {
+  const struct params *params = sim->params;
+  const struct mesh *mesh = sim->grid.mesh;
+  double *c = sim->c->v;
+  fill_part(sim, by->fineness, &params->shape, c);
+  fill_tracers(sim, by->fineness, c);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double x[3] = {0};
     for (int e = 0; e < DIM; e++) x[e] = mesh->x[i][e];
-    int depth = params->level_max - mesh->level[i] + by->fineness;
-    if (depth > 6) depth = 6;
-    const double c = params->shape.eval
-                         ? fraction(shape_memory_value, memory, mesh->x[i],
-                                    mesh->h[i], depth)
-                         : 1;
-    fill_leaf(sim, by, i, x, c);
+    fill_leaf(sim, by, i, x, c[i]);
     for (int e = 0; e < DIM; e++) {
       const struct function *u = &params->velocity[e];
       const double value = u->eval ? u->eval(u->context, x) : 0;
       for (int k = 0; k < TWO_FLUID_NPHASES; k++) sim->u[k][e]->v[i] = value;
     }
   }
-  shape_memory_destroy(memory);
 }
 
 static void adapt_to_state(struct two_fluid *sim, struct filling *by,
@@ -174,6 +195,27 @@ static void check_boundaries(const struct params *params) {
   }
 }
 
+/* Refuse a flow into a box that nothing leaves: no pressure lets it in. */
+static void check_balance(const struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double net = 0, all = 0;
+  if (sim->grid.pressure_set) return;
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    if (!two_fluid_is_side(sim, f)) continue;
+    const double through = sim->j->v[f] * mesh_face_area(mesh, f);
+    net += mesh->face_leaf[f][0] < 0 ? through : -through;
+    all += fabs(through);
+  }
+  net = mesh_sum(mesh, net), all = mesh_sum(mesh, all);
+  if (fabs(net) > 1e-6 * all)
+    USER_ERROR(
+        "the sides of the box let in %g m^2/s (3D, axisymmetric: m^3/s) of "
+        "fluid more than they let out, which is to be 0 in a box without an "
+        "outflow: take { \"outflow\", pressure = 0 } for one of them, or "
+        "velocities that balance",
+        net);
+}
+
 static void check_packing(const struct two_fluid *sim) {
   const double densest = two_fluid_densest(&sim->closure);
   if (sim->keys->alpha_start >= densest)
@@ -210,6 +252,7 @@ struct two_fluid *two_fluid_new(const struct params *params,
   }
   openings_check(&sim->grid);
   set_fluxes(sim);
+  check_balance(sim);
   set_cap(sim, axis);
   if (!settled) say_pressure(sim, axis);
   depths_free(&depths);

@@ -74,6 +74,13 @@ static struct field *add_kept_face(struct two_fluid *sim, const char *name,
   return field;
 }
 
+static void add_tracers(struct two_fluid *sim) {
+  for (int k = 0; k < sim->params->ntracers; k++)
+    sim->tracer[k] =
+        add(sim, sim->params->tracer[k].name, "1",
+            "part of the grains in the passive tracer", &solid_rule, true);
+}
+
 static void add_state(struct two_fluid *sim) {
   static const char *const name[TWO_FLUID_NPHASES][3] = {
       {"solid_velocity_x", "solid_velocity_y", "solid_velocity_z"},
@@ -97,6 +104,7 @@ static void add_state(struct two_fluid *sim) {
                    &solid_rule, plastic);
   sim->X = add(sim, "shear_stress", "Pa", "shear that makes pressure",
                &solid_rule, false);
+  add_tracers(sim);
   sim->flux = add_kept_face(sim, "solid_flux", "volume flux of the grains",
                             &remap_faces);
   sim->j = add_kept_face(sim, "total_flux", "volume flux of grains and fluid",

@@ -118,6 +118,18 @@ static void carry(struct two_fluid *sim, const struct carrier *by,
   mesh_touch(mesh, q->v);
 }
 
+/* Carry tracers with the grains; leaves without grains are in none. */
+static void carry_tracers(struct two_fluid *sim, const struct carrier *by) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int k = 0; k < sim->params->ntracers; k++) {
+    double *part = sim->tracer[k]->v;
+    carry(sim, by, sim->tracer[k]);
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      if (sim->alpha_new->v[i] < TWO_FLUID_NONE) part[i] = 0;
+    mesh_touch(mesh, part);
+  }
+}
+
 void two_fluid_transport(struct two_fluid *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   double *cell[2], *face[2];
@@ -138,6 +150,7 @@ void two_fluid_transport(struct two_fluid *sim, double dt) {
     if (by.phase == TWO_FLUID_F) continue;
     carry(sim, &by, sim->phi_p);
     carry(sim, &by, sim->X);
+    carry_tracers(sim, &by);
   }
   scratch_give(&sim->scratch, __func__);
   memcpy(sim->alpha->v, sim->alpha_new->v,

@@ -75,6 +75,10 @@ sed 's/top = "slip"/top = { "inflow", velocity = { 0, -1 }, fraction = 0.5 }/' \
   cliff.lua > in.lua
 ends 2 "$talus" run in.lua -o wrong
 says 'only fluid passes the sides'
+sed 's/bottom = "no_slip"/bottom = { "inflow", velocity = { 0, 0.01 } }/' \
+  cliff.lua > closed.lua
+ends 2 "$talus" run closed.lua -o wrong
+says 'let in 0.004 m^2/s.*outflow'
 sed 's/d = 1e-3/d = 1e-3, rho_d = 2/' cliff.lua > key.lua
 ends 2 "$talus" check key.lua
 says 'rho_d'
@@ -92,6 +96,18 @@ for dense in 0 1; do
     stop=0.2 -o calm$dense --quiet
   grep -q burst output && complain "a run that makes no energy is warned of"
 done
+
+# tracers: what a profile has of them stays, over a restart too
+sed 's/domain = /tracers = { low = function(x, y) return 0.05 - y end }, &/' \
+  cliff.lua > tracer.lua
+ends 0 "$talus" run tracer.lua -o tracer --quiet
+ends 5 "$talus" run tracer.lua -o tracer_parts --quiet --max-steps 9
+ends 0 "$talus" run tracer.lua -o tracer_parts --quiet --restart
+diff tracer/profile.csv tracer_parts/profile.csv > output ||
+  complain "a restart changes tracers"
+awk -F, 'NR > 1 { h[$1] += $3; low[$1] += $4 }
+         END { for (t in h) if (low[t] / h[t] < 0.5 || low[t] / h[t] > 0.52)
+                 exit 1 }' tracer/profile.csv || complain "tracers get lost"
 
 # rings: restart and ranks
 sed 's/dimension = /coordinates = "axisymmetric", &/' cliff.lua > ring.lua

@@ -36,6 +36,9 @@ struct two_fluid_measures {
 /* Measure; free the outline with outline_free. Collective. */
 void two_fluid_measure(struct two_fluid *sim,
                        struct two_fluid_measures *measures);
+/* Set layer[k] [columns of the outline] to the height that tracer k has of it,
+ * m, owned by the caller. Collective. */
+void two_fluid_measure_layers(const struct two_fluid *sim, double **layer);
 /* Return kinetic energy of both phases and potential energy. Collective. */
 double two_fluid_energy(const struct two_fluid *sim);
 /* Return component d of the flux of the grains over alpha in leaf i, m/s. */

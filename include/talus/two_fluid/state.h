@@ -46,6 +46,9 @@ struct two_fluid {
   struct field *p;                         /* pressure, Pa */
   struct field *phi_p;                     /* plastic packing */
   struct field *X;                         /* of two_fluid_grains.h, Pa */
+  /* part of the grains of a leaf that a tracer marks; slopes let it pass 0 and
+   * 1 by a hundredth */
+  struct field *tracer[PARAMS_MAX_TRACERS];
   struct field *flux; /* alpha u_s through faces, m/s, in the last step */
   struct field *j;    /* alpha u_s + (1 - alpha) u_f, likewise */
 
