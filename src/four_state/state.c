@@ -98,6 +98,15 @@ static void add_made(struct four_state *sim) {
                DIM + 4);
 }
 
+static void refuse(const double *param, const char *wrong) {
+  USER_ERROR(
+      "grains: %s (nu_min = %g, nu_0 = %g, nu_max = %g, a = %g, delta = %g, "
+      "e_eff = %g)",
+      wrong, param[LEE_HUANG_NU_MIN], param[LEE_HUANG_NU_0],
+      param[LEE_HUANG_NU_MAX], param[LEE_HUANG_A], param[LEE_HUANG_DELTA],
+      param[LEE_HUANG_E_EFF]);
+}
+
 struct four_state *four_state_new_on(const struct params *params,
                                      struct forest *forest) {
   struct four_state *sim = MEM_NEW(struct four_state, 1);
@@ -106,7 +115,7 @@ struct four_state *four_state_new_on(const struct params *params,
   sim->keys = params->own;
   const char *wrong = four_state_closure_init(&sim->closure, sim->keys->param,
                                               sim->keys->knudsen);
-  if (wrong != NULL) USER_ERROR("grains: %s", wrong);
+  if (wrong != NULL) refuse(sim->keys->param, wrong);
   grid_init(&sim->grid, params, forest);
   add_state(sim);
   add_made(sim);

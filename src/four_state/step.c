@@ -51,7 +51,7 @@
 
 /* A failed step is repeated at most RETRIES times, each time with dt reduced by
  * RETRY_FACTOR. */
-enum { RETRIES = 12, PICARD = 2, MOST_NEWTON = 30 };
+enum { RETRIES = 20, PICARD = 2, MOST_NEWTON = 30 };
 #define RETRY_FACTOR 0.5
 
 /* A leaf may give away this part of its grains in a step. */

@@ -67,7 +67,7 @@ sed 's/top = "slip"/top = { "outflow", pressure = 0 }/' \
 ends 2 "$talus" run open.lua level=5 -o open
 says 'has no inflow and no outflow'
 ends 2 "$talus" run $column nu_min=0.61 -o wrong
-says 'nu_min < nu_0 < nu_max'
+says 'nu_min < nu_0 < nu_max is needed (nu_min = 0.61, nu_0 = 0.6'
 ends 0 "$talus" check $column n=1e4
 says 'creep' && says '2 ln(100)/n = 0.000921/s'
 ends 2 "$talus" check $column eta_S=-1
