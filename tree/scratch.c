@@ -20,11 +20,11 @@ static void add_arrays(struct scratch *scratch, struct fields *fields,
 void scratch_init(struct scratch *scratch, struct fields *fields,
                   struct mesh *const *mesh, int ncells, int nfaces) {
   static const char *const cell[SCRATCH_MAX] = {
-      "cell_0", "cell_1", "cell_2", "cell_3", "cell_4",
-      "cell_5", "cell_6", "cell_7", "cell_8", "cell_9"};
+      "cell_0", "cell_1", "cell_2", "cell_3", "cell_4",  "cell_5",
+      "cell_6", "cell_7", "cell_8", "cell_9", "cell_10", "cell_11"};
   static const char *const face[SCRATCH_MAX] = {
-      "face_0", "face_1", "face_2", "face_3", "face_4",
-      "face_5", "face_6", "face_7", "face_8", "face_9"};
+      "face_0", "face_1", "face_2", "face_3", "face_4",  "face_5",
+      "face_6", "face_7", "face_8", "face_9", "face_10", "face_11"};
   memset(scratch, 0, sizeof *scratch);
   scratch->mesh = mesh;
   add_arrays(scratch, fields, FIELD_CELL, ncells, cell);

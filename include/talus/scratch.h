@@ -18,7 +18,7 @@
 
 #include "talus/field.h"
 
-enum { SCRATCH_MAX = 10 }; /* arrays at one location */
+enum { SCRATCH_MAX = 12 }; /* arrays at one location */
 
 struct scratch {
   struct mesh *const *mesh;            /* borrowed: that of the fields */

@@ -57,7 +57,8 @@ void strain_find(const struct mesh *mesh, const struct skin *skin,
 /* rows [STRAIN_ROWS][nfaces_all]: D - (tr D)/3 I, 1/s, of a flow that changes
  * its volume; in a plane flow the row of the hoop is that across the plane.
  * Collective. */
-void strain_find_deviator(const struct mesh *mesh, double *const u[DIM],
+void strain_find_deviator(const struct mesh *mesh, const struct skin *skin,
+                          double *const u[DIM],
                           double *const rows[STRAIN_ROWS]);
 /* force[e] [nleaves] = (div s)_e, N/m^3, of a stress s [nfaces_all], Pa, whose
  * first DIM rows, and in rings the hoop, are filled. */

@@ -284,10 +284,11 @@ double yield_advance(const struct yield *yield, double dt, const double *r,
   const int n = yield->nrows;
   double *rows[STRAIN_ROWS], sum[4] = {0};
   scratch_take(yield->scratch, FIELD_FACE, __func__, n, rows);
+  const struct skin *skin = yield->skin ? *yield->skin : NULL;
   if (yield->compressible)
-    strain_find_deviator(mesh, u, rows);
+    strain_find_deviator(mesh, skin, u, rows);
   else
-    strain_find(mesh, yield->skin ? *yield->skin : NULL, u, rows);
+    strain_find(mesh, skin, u, rows);
   for (int d = 0; d < DIM; d++) {
     if (n == DIM) {
       advance_faces(yield, DIM, d, dt, r, eta, rows, again, sum);

@@ -146,7 +146,27 @@ void strain_find(const struct mesh *mesh, const struct skin *skin,
   mesh_fill_faces(mesh, strain_rows(mesh), rows);
 }
 
-void strain_find_deviator(const struct mesh *mesh, double *const u[DIM],
+/* Set what D at the faces beside the surface has of derivatives along them. */
+static void set_skin_rows(const struct mesh *mesh, const struct skin *skin,
+                          double *const u[DIM],
+                          double *const rows[STRAIN_ROWS]) {
+  for (int32_t k = 0; k < skin->n; k++) {
+    const struct skin_face *face = &skin->face[k];
+    const int32_t f = face->face;
+    const int d = face->axis;
+    double grad[DIM][DIM];
+    face_gradient(mesh, d, f, u, grad);
+    for (int e = 0; e < DIM; e++) {
+      if (e == d) continue;
+      const double along =
+          mesh_slope(mesh, f, skin_difference(mesh, face, e, u[d]));
+      rows[e][f] = 0.5 * face->part[e] * (grad[e][d] + along);
+    }
+  }
+}
+
+void strain_find_deviator(const struct mesh *mesh, const struct skin *skin,
+                          double *const u[DIM],
                           double *const rows[STRAIN_ROWS]) {
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
@@ -161,6 +181,7 @@ void strain_find_deviator(const struct mesh *mesh, double *const u[DIM],
       if (DIM == 2) rows[STRAIN_HOOP][f] = hoop - trace / 3;
     }
   }
+  if (skin) set_skin_rows(mesh, skin, u, rows);
   mesh_fill_faces(mesh, STRAIN_ROWS, rows);
 }
 

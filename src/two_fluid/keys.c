@@ -12,6 +12,9 @@ static const char *const STARTS[] = {"settled", "patched", "dense", NULL};
 /* enum two_fluid_surface */
 static const char *const SURFACES[] = {"none", "planes", NULL};
 
+/* enum two_fluid_regularisation */
+static const char *const REGULARISATIONS[] = {"clip", "exact", NULL};
+
 /* clang-format would take three times the lines. */
 /* clang-format off */
 static const struct key KEYS[] = {
@@ -35,6 +38,11 @@ static const struct key KEYS[] = {
     {"grains.alpha_surface", KEY_NUMBER, .low = 1e-4, .high = 0.6, KEY_DEFAULT "0.3",
      .unit = "", .offset = AT(alpha_surface),
      .help = "solid fraction whose contour is the surface"},
+    {"grains.regularisation", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "clip", .unit = "",
+     .offset = AT(regularisation), .choices = REGULARISATIONS,
+     .help = "how friction becomes a viscosity at small shear rates: clip caps "
+             "it; exact keeps the stress of grains at rest, which then hold "
+             "still"},
     {"grains.eta_max", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "0", .unit = "Pa s",
      .offset = AT(eta_max),
      .help = "cap on the viscosity of the grains, by which slopes creep; 0: "

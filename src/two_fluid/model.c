@@ -78,6 +78,11 @@ static bool is_at_rest(struct model *model) {
 static void outputs(struct model *model, bool make) {
   struct two_fluid *sim = of(model);
   const int32_t n = sim->grid.mesh->nleaves;
+  struct field *state = sim->yield.state; /* NULL unless exact */
+  if (state) {
+    mem_free(state->v);
+    state->v = make ? MEM_NEW(double, n) : NULL;
+  }
   for (int d = 0; d < DIM; d++) {
     mem_free(sim->mean[d]->v);
     sim->mean[d]->v = make ? MEM_NEW(double, n) : NULL;
@@ -89,6 +94,7 @@ static void outputs(struct model *model, bool make) {
   for (int32_t i = 0; i < n; i++)
     sim->c->v[i] = min2(sim->alpha->v[i] / sim->keys->alpha_start, 1);
   mesh_touch(sim->grid.mesh, sim->c->v);
+  if (state) yield_find_state(&sim->yield, sim->c->v, state->v);
 }
 
 /* Columns of series.csv */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "talus/minmax.h"
+#include "talus/outline.h"
 #include "talus/projection.h"
 #include "talus/two_fluid/properties.h"
 #include "talus/two_fluid/state.h"
@@ -23,6 +24,8 @@ enum { MOST_NEWTON = 40 };
 enum { MOST_PASSES = 4 };
 /* A face has at least this part of the mean mass of its leaves. */
 #define LEAST_LENT 0.1
+/* Still grains are slower than this part of what gravity gives in a step. */
+#define SLOW 0.1
 
 /* Give the solid fractions that both leaves lend to face f of axis d. */
 static inline void lent(const struct two_fluid *sim, int d, int32_t f,
@@ -58,7 +61,11 @@ static double force_of(const struct two_fluid *sim, int d, int32_t f,
                                  two_fluid_density(sim, TWO_FLUID_S);
   const double weight = buoyant * pair->rho_s * sim->params->gravity[d];
   if (!(pair->phi > TWO_FLUID_NONE)) return weight;
-  return weight - mesh_gradient(sim->grid.mesh, sim->p_s->v, f) / pair->phi;
+  const bool level = d != outline_axis(sim->params->gravity);
+  const double slope = mesh_gradient(sim->grid.mesh, sim->p_s->v, f);
+  const double lack =
+      level ? mesh_gradient(sim->grid.mesh, sim->lack->v, f) : 0;
+  return weight - (slope - lack) / pair->phi;
 }
 
 /* Does fluid, but no grains, pass face f of a side whose pressure is given? */
@@ -112,23 +119,79 @@ void two_fluid_leaf_force(struct two_fluid *sim, int phase, int e, double *b) {
     b[i] = share_of(sim, phase, e, i, face);
 }
 
+/* Return F of a velocity u of a phase at face f of axis d. */
+static inline double mean_at(const struct two_fluid *sim, int phase, int d,
+                             int32_t f, const double *u) {
+  const int32_t *node = sim->grid.mesh->face_node[f];
+  const double *alpha = sim->alpha->v;
+  double m[2] = {1 - alpha[node[0]], 1 - alpha[node[1]]};
+  if (phase == TWO_FLUID_S) lent(sim, d, f, m);
+  const double u0 = u[node[0]], u1 = u[node[1]], M = m[0] + m[1];
+  return M > TWO_FLUID_NONE ? (m[0] * u0 + m[1] * u1) / M : 0.5 * (u0 + u1);
+}
+
 /* Set w of both phases on our own faces; the velocities are filled. */
 static void set_means(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  const double *alpha = sim->alpha->v;
   for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
     double *w = sim->w_f[k]->v;
     for (int d = 0; d < DIM; d++) {
       const double *u = sim->u[k][d]->v;
       for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-        const int32_t *node = mesh->face_node[f];
-        double m[2] = {1 - alpha[node[0]], 1 - alpha[node[1]]};
-        if (k == TWO_FLUID_S) lent(sim, d, f, m);
-        const double u0 = u[node[0]], u1 = u[node[1]], M = m[0] + m[1];
-        w[f] =
-            M > TWO_FLUID_NONE ? (m[0] * u0 + m[1] * u1) / M : 0.5 * (u0 + u1);
+        w[f] = mean_at(sim, k, d, f, u);
         if (two_fluid_is_side(sim, f) && k == TWO_FLUID_S) w[f] = 0;
       }
+    }
+  }
+}
+
+/* Set the field still to how still the grains of leaves are, 1: at rest; 0
+ * where they move by SLOW of what gravity gives them in dt, or carry nothing.
+ */
+static void find_still(struct two_fluid *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++)
+    g2 += sim->params->gravity[d] * sim->params->gravity[d];
+  const double slow = max2(SLOW * dt * sqrt(g2), 1e-300);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double u2 = 0;
+    for (int e = 0; e < DIM; e++) {
+      const double u = sim->u[TWO_FLUID_S][e]->saved[i];
+      u2 += u * u;
+    }
+    const double c = sim->rest->v[i] > 0 ? sim->c->v[i] : 1;
+    sim->yield.still->v[i] =
+        min2(sim->touches->v[i] / c, 1) * max2(0, 1 - sqrt(u2) / slow);
+  }
+  mesh_fill_ghosts(mesh, 1, &sim->yield.still->v);
+}
+
+/* Let w of faces between still grains be such that the forces of before would
+ * leave them with what viscosity has left the leaves with. */
+static void hold_still(struct two_fluid *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *still = sim->yield.still->v;
+  find_still(sim, dt);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      const int32_t *leaf = mesh->face_leaf[f];
+      if (two_fluid_is_side(sim, f) || leaf[0] < 0 || leaf[1] < 0) continue;
+      const double part = min2(still[leaf[0]], still[leaf[1]]);
+      if (!(part > 0)) continue;
+      const struct two_fluid_pair pair = pair_of(sim, dt, d, f);
+      const double slope = mesh_gradient(mesh, sim->p->v, f);
+      const double u_s =
+          mean_at(sim, TWO_FLUID_S, d, f, sim->held[TWO_FLUID_S][d]->v);
+      const double u_f =
+          mean_at(sim, TWO_FLUID_F, d, f, sim->held[TWO_FLUID_F][d]->v);
+      const double slip = u_s - u_f;
+      const double c_f = pair.drag * pair.phi / (1 - pair.phi);
+      const double force_s = force_of(sim, d, f, &pair) - slope;
+      const double w_s = u_s + (pair.drag * slip - dt * force_s) / pair.rho_s;
+      const double w_f = u_f - (c_f * slip - dt * slope) / pair.rho_f;
+      sim->w_f[TWO_FLUID_S]->v[f] += part * (w_s - sim->w_f[TWO_FLUID_S]->v[f]);
+      sim->w_f[TWO_FLUID_F]->v[f] += part * (w_f - sim->w_f[TWO_FLUID_F]->v[f]);
     }
   }
 }
@@ -344,6 +407,7 @@ void two_fluid_pressures(struct two_fluid *sim, double dt) {
   sim->pressure = (struct granular_stats){0};
   sim->projection = (struct solve_stats){0};
   set_means(sim);
+  if (sim->exact) hold_still(sim, dt);
   field_fill_faces(mesh, sim->j);
   for (sim->passes = 0; sim->passes < MOST_PASSES && change > enough;
        sim->passes++) {

@@ -4,11 +4,17 @@
 #include <math.h>
 
 #include "talus/minmax.h"
+#include "talus/skin.h"
 #include "talus/strain.h"
 #include "talus/two_fluid/state.h"
 #include "talus/two_fluid/surface.h"
 #include "talus/two_fluid_drag.h"
 #include "talus/two_fluid_ktgf.h"
+
+/* Weights of leaves in tangential differences where grains do not touch and
+ * where there are none. */
+#define LOOSE 1e-3
+#define NO_GRAINS 1e-6
 
 /* Interpolated solid fractions stay within those that a leaf may have. */
 static void clamp_helpers(const struct two_fluid *sim, double *v, double low,
@@ -52,7 +58,8 @@ static void find_shear(struct two_fluid *sim) {
   for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
     double *u[DIM];
     field_arrays(sim->u[k], u);
-    strain_shear_rate(mesh, NULL, u, sim->shear_f[k]->v);
+    const struct skin *skin = k == TWO_FLUID_S ? sim->skin : NULL;
+    strain_shear_rate(mesh, skin, u, sim->shear_f[k]->v);
     field_fill_faces(mesh, sim->shear_f[k]);
   }
 }
@@ -116,6 +123,7 @@ static double slip_between(const struct two_fluid *sim, int32_t a, int32_t b) {
 static double yielding_rate(const struct two_fluid *sim, int32_t i,
                             double phi) {
   const double gamma = sim->shear->v[i];
+  if (sim->exact) return gamma; /* two_fluid_shear_leaves has left it out */
   const struct two_fluid_stress stress =
       two_fluid_stress(&sim->closure, phi, max2(sim->load->v[i], 0), gamma,
                        sim->eta->v[i], sim->Theta->v[i]);
@@ -214,8 +222,13 @@ static void set_face_drag(struct two_fluid *sim) {
 static void fill_pressure(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct bc *bc = sim->p_s->bc;
-  for (int32_t i = 0; i < mesh->nleaves; i++)
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double c = sim->rest->v[i] > 0 ? sim->c->v[i] : 1;
     sim->weight->v[i] = max2(sim->alpha->v[i], TWO_FLUID_NONE);
+    sim->lack->v[i] = (1 - c) * sim->p_s->v[i];
+  }
+  mesh_touch(mesh, sim->lack->v);
+  field_fill(mesh, sim->lack);
   field_fill(mesh, sim->weight);
   clamp_helpers(sim, sim->weight->v, TWO_FLUID_NONE, 1);
   field_fill(mesh, sim->Theta);
@@ -262,17 +275,43 @@ static void set_upper(struct two_fluid *sim) {
   }
 }
 
+/* Find the faces beside leaves in which grains do not touch: what moves there
+ * is not continued by the grains of a bed. */
+static void find_skin(struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *m = sim->touches->v, g2 = 0;
+  for (int d = 0; d < DIM; d++)
+    g2 += sim->params->gravity[d] * sim->params->gravity[d];
+  const double weight = sqrt(g2) * (two_fluid_density(sim, TWO_FLUID_S) -
+                                    two_fluid_density(sim, TWO_FLUID_F));
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double half = 0.5 * weight * mesh->h[i] * sim->alpha->v[i];
+    const double c = sim->rest->v[i] > 0 ? sim->c->v[i] : 1;
+    m[i] = NO_GRAINS;
+    if (!two_fluid_has_grains(sim, i)) continue;
+    m[i] = half > 0 ? c * min2(max2(sim->p_s->v[i], 0) / half, 1) : c;
+    m[i] = max2(m[i], LOOSE);
+  }
+  mesh_touch(mesh, m);
+  field_fill(mesh, sim->touches);
+  clamp_helpers(sim, m, NO_GRAINS, 1);
+  sim->skin->grains_only = true;
+  skin_find(mesh, m, 1, sim->skin);
+}
+
 void two_fluid_properties(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   fill_alpha(sim);
   field_fill_many(mesh, DIM, sim->u[TWO_FLUID_F]);
   two_fluid_calm(sim);
   two_fluid_find_surface(sim);
+  if (sim->exact) sim->skin->n = 0; /* it may be that of an earlier mesh */
   find_shear(sim);
   find_sliding(sim);
   for (int32_t i = 0; i < mesh->nleaves; i++) set_leaf(sim, i);
   set_face_drag(sim);
   fill_pressure(sim);
+  if (sim->exact) find_skin(sim);
   set_upper(sim);
 }
 
@@ -322,6 +361,7 @@ static void set_solid(struct two_fluid *sim, int d, int32_t f, double alpha,
   double *eta = &sim->eta_f[TWO_FLUID_S]->v[f];
   double *kappa = &sim->kappa_f[TWO_FLUID_S]->v[f];
   *eta = *kappa = 0;
+  if (sim->exact) sim->yield.tau_y->v[f] = 0;
   if (sim->alpha->v[node[0]] < TWO_FLUID_NONE ||
       sim->alpha->v[node[1]] < TWO_FLUID_NONE)
     return;
@@ -333,15 +373,47 @@ static void set_solid(struct two_fluid *sim, int d, int32_t f, double alpha,
   const double *C = sim->hardening->v;
   const double more = 0.5 * (C[node[0]] + C[node[1]]) * (gamma * sim->dt) +
                       sheared(sim, f, alpha, p, gamma, eta_fluid);
-  const struct two_fluid_stress stress =
-      two_fluid_stress(&sim->closure, alpha, max2(p + more, 0), gamma,
-                       eta_fluid, 0.5 * (Theta[node[0]] + Theta[node[1]]));
-  *eta = two_fluid_capped(&stress, gamma, sim->keys->gamma_r, sim->eta_max);
+  const double T = 0.5 * (Theta[node[0]] + Theta[node[1]]);
+  const struct two_fluid_stress stress = two_fluid_stress(
+      &sim->closure, alpha, max2(p + more, 0), gamma, eta_fluid, T);
   *kappa = stress.kappa;
+  if (!sim->exact) {
+    *eta = two_fluid_capped(&stress, gamma, sim->keys->gamma_r, sim->eta_max);
+    return;
+  }
+  const double held = p + sheared(sim, f, alpha, p, 0, eta_fluid);
+  const double tau_y =
+      two_fluid_stress(&sim->closure, alpha, max2(held, 0), 0, eta_fluid, T)
+          .tau_y;
+  const double beyond = max2(stress.tau_y - tau_y, 0);
+  sim->yield.tau_y->v[f] = tau_y;
+  *eta = stress.eta + (gamma > 0 ? beyond / gamma : 0);
+}
+
+/* Let faces whose stress is below the yield stress not slide. */
+static void hold_faces(struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *tau_y = sim->yield.tau_y->v;
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      if (tau_y[f] > 0 && !yield_is_reached(&sim->yield, d, f))
+        sim->force_f->v[f] = 0;
+    }
+  }
+  field_fill_faces(mesh, sim->force_f);
+}
+
+/* Ask closures for no smaller shear rates than they can tell from none. */
+static void least_shear(struct two_fluid *sim) {
+  const double least = yield_least_rate(sim->params, sim->scale);
+  double *shear = sim->shear_f[TWO_FLUID_S]->v;
+  for (int32_t f = 0; f < sim->grid.mesh->nfaces; f++)
+    shear[f] = max2(shear[f], least);
 }
 
 void two_fluid_shear_leaves(struct two_fluid *sim) {
   find_sliding(sim);
+  if (sim->exact) hold_faces(sim);
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
     sim->shear->v[i] = leaf_shear(sim->grid.mesh, sim->force_f->v, i);
 }
@@ -350,6 +422,7 @@ void two_fluid_viscosities(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   const double *alpha = sim->alpha->v;
   find_shear(sim);
+  if (sim->exact) least_shear(sim);
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];

@@ -253,7 +253,7 @@ struct two_fluid *two_fluid_new(const struct params *params,
   openings_check(&sim->grid);
   set_fluxes(sim);
   check_balance(sim);
-  set_cap(sim, axis);
+  if (!sim->exact) set_cap(sim, axis);
   if (!settled) say_pressure(sim, axis);
   depths_free(&depths);
   return sim;

@@ -8,6 +8,7 @@
 #include "talus/minmax.h"
 #include "talus/remap.h"
 #include "talus/sides.h"
+#include "talus/skin.h"
 
 /* Set the conditions of one boundary, on a patch across `axis`. Where fluid
  * passes, grains find a smooth wall. */
@@ -133,6 +134,7 @@ static void add_leaves(struct two_fluid *sim) {
                "solid fraction over that of the start, at most 1", NULL, true);
   sim->phi = add(sim, "bed_fraction", "1", "", NULL, false);
   sim->rest = add(sim, "resting", "Pa", "", NULL, false);
+  sim->lack = add(sim, "lack", "Pa", "", NULL, false);
   sim->carried = add(sim, "carried", "1", "", NULL, false);
   sim->plane = add(sim, "plane", "1", "", NULL, false);
   for (int d = 0; d < DIM; d++) {
@@ -145,6 +147,31 @@ static void add_leaves(struct two_fluid *sim) {
     mem_free(sim->mean[d]->v);
     sim->mean[d]->v = NULL;
   }
+}
+
+/* Add the fields of an exact yield. */
+static void add_yield(struct two_fluid *sim) {
+  struct yield *yield = &sim->yield;
+  yield_add(yield, &sim->grid.fields, &sim->grid.mesh, true);
+  yield->scratch = &sim->scratch;
+  yield->eta = sim->eta_f[TWO_FLUID_S];
+  yield->shear = sim->shear_f[TWO_FLUID_S];
+  static const char *const held[TWO_FLUID_NPHASES][3] = {
+      {"solid_held_x", "solid_held_y", "solid_held_z"},
+      {"fluid_held_x", "fluid_held_y", "fluid_held_z"}};
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
+    for (int d = 0; d < DIM; d++)
+      sim->held[k][d] = add(sim, held[k][d], "m/s", "", NULL, false);
+  }
+  sim->touches = add(sim, "touches", "1", "", NULL, false);
+  sim->skin = skin_new();
+  yield->skin = &sim->skin;
+  yield->still = add(sim, "still", "1", "", NULL, false);
+  yield->state = add(sim, "yield_state", "1", "0: held, 1: at the yield stress",
+                     NULL, true);
+  yield->state->on_demand = true;
+  mem_free(yield->state->v);
+  yield->state->v = NULL;
 }
 
 static void add_faces(struct two_fluid *sim) {
@@ -160,13 +187,32 @@ static void add_faces(struct two_fluid *sim) {
   sim->mobility_f = add_face(sim, "mobility");
   sim->lambda_f = add_face(sim, "mixture_mobility");
   sim->force_f = add_face(sim, "face_force");
-  scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, 3 * DIM + 1,
-               4);
+  sim->exact = sim->keys->regularisation == TWO_FLUID_EXACT;
+  if (sim->exact) add_yield(sim);
+  const int more = sim->exact ? STRAIN_ROWS : 0;
+  scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh,
+               3 * DIM + 1 + sim->exact, 4 + more);
+}
+
+/* Refuse bounds of what an exact yield does not bound. */
+static void check_yield(const struct two_fluid_keys *keys) {
+  if (keys->regularisation != TWO_FLUID_EXACT) return;
+  if (keys->eta_max > 0)
+    USER_ERROR(
+        "grains.eta_max = %g has no meaning with regularisation = \"exact\", "
+        "which caps nothing: leave it out, or say regularisation = \"clip\"",
+        keys->eta_max);
+  if (keys->gamma_r > 0)
+    USER_ERROR(
+        "grains.gamma_r = %g has no meaning with regularisation = \"exact\": "
+        "leave it out, or say regularisation = \"clip\"",
+        keys->gamma_r);
 }
 
 void two_fluid_closures(const struct params *params,
                         struct two_fluid_closure *c) {
   const struct two_fluid_keys *keys = params->own;
+  check_yield(keys);
   *c = keys->closure;
   if (keys->fluid != TWO_FLUID_OWN) two_fluid_take_fluid(c, keys->fluid);
   for (int k = TWO_FLUID_FLUID_DENSITY; k <= TWO_FLUID_FLUID_N; k++)
@@ -213,6 +259,7 @@ bool two_fluid_is_driven(const struct two_fluid *sim) {
 void two_fluid_destroy(struct two_fluid *sim) {
   if (!sim) return;
   grid_release(&sim->grid);
+  skin_destroy(sim->skin);
   mem_free(sim);
 }
 

@@ -11,8 +11,12 @@
 #include "talus/two_fluid_pair.h"
 #include "talus/viscous.h"
 
-/* Friction is found PICARD times, with the shear rates of the last solve. */
-enum { PICARD = 2 };
+/* Friction is found PICARD times, with the shear rates of the last solve, and
+ * with an exact yield at most MOST_SOLVES times until the stress fits. */
+enum { PICARD = 2, MOST_SOLVES = 8 };
+/* The mismatch (yield.h) that fits, and one that is told to the user. */
+#define FIT 0.0005
+#define BAD 0.02
 
 /* Return m of a phase in leaf i, > 0. */
 static double mass_of(const struct two_fluid *sim, int phase, int32_t i) {
@@ -57,6 +61,11 @@ static void add_solve(struct solve_stats *sum, const struct solve_stats *next) {
   sum->iterations = iterations;
 }
 
+/* Return the skin that the velocity of a phase has. */
+static const struct skin *skin_of(const struct two_fluid *sim, int phase) {
+  return phase == TWO_FLUID_S ? sim->skin : NULL;
+}
+
 /* Solve for the velocity of a phase; u: guess, solution. tolerance in m/s. */
 static void solve(struct two_fluid *sim, int phase, double dt,
                   const double *eta_f, const double *mass,
@@ -64,7 +73,8 @@ static void solve(struct two_fluid *sim, int phase, double dt,
   const struct bc *bc[DIM];
   double *u[DIM];
   const struct viscosity viscosity = {.eta_f = eta_f,
-                                      .kappa_f = sim->kappa_f[phase]->v};
+                                      .kappa_f = sim->kappa_f[phase]->v,
+                                      .skin = skin_of(sim, phase)};
   field_arrays(sim->u[phase], u);
   for (int e = 0; e < DIM; e++) bc[e] = sim->u[phase][e]->bc;
   const struct solve_stats stats =
@@ -98,7 +108,8 @@ static void keep_solid(struct two_fluid *sim, double dt, const double *shared,
   double *u[DIM];
   field_arrays(sim->u[TWO_FLUID_S], u);
   const struct viscosity fluid = {.eta_f = shared,
-                                  .kappa_f = sim->kappa_f[TWO_FLUID_F]->v};
+                                  .kappa_f = sim->kappa_f[TWO_FLUID_F]->v,
+                                  .skin = sim->skin};
   viscous_force(mesh, &fluid, u, force);
   for (int e = 0; e < DIM; e++) {
     const double *before = sim->u[TWO_FLUID_S][e]->saved;
@@ -110,12 +121,79 @@ static void keep_solid(struct two_fluid *sim, double dt, const double *shared,
   }
 }
 
+/* Solve for the grains with their friction. Leaves in `shared` what set_shared
+ * does. */
+static void solve_capped(struct two_fluid *sim, double dt, const double *mass,
+                         double *const rhs[DIM], double *shared) {
+  double *all = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  for (int k = 0; k < PICARD; k++) {
+    if (k > 0) {
+      two_fluid_calm(sim);
+      two_fluid_viscosities(sim);
+    }
+    set_shared(sim, dt, shared, all);
+    solve(sim, TWO_FLUID_S, dt, all, mass, rhs,
+          sim->params->tolerance_viscous * sim->scale);
+  }
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Set `full` to the right hand side with the force of the stress, which it has,
+ * and `all` to shared and the viscosity of the grains. */
+static void add_stress(const struct two_fluid *sim, double dt,
+                       double *const rhs[DIM], const double *shared,
+                       double *all, double *const full[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int e = 0; e < DIM; e++) {
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      full[e][i] = rhs[e][i] + dt * full[e][i];
+  }
+  for (int32_t f = 0; f < mesh->nfaces_all; f++) all[f] += shared[f];
+}
+
+/* Do it with an exact yield (yield.h); full [DIM][nleaves] is overwritten. */
+static void solve_yield(struct two_fluid *sim, double dt, const double *mass,
+                        double *const rhs[DIM], double *shared,
+                        double *const full[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *face[3], *u[DIM], mismatch = HUGE_VAL;
+  field_arrays(sim->u[TWO_FLUID_S], u);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 3, face);
+  double *r = face[0], *eta = face[1], *all = face[2];
+  const double buoyant =
+      two_fluid_density(sim, TWO_FLUID_S) - two_fluid_density(sim, TWO_FLUID_F);
+  int k = 0;
+  for (; k < MOST_SOLVES && (k < PICARD || mismatch > FIT); k++) {
+    if (k > 0) two_fluid_viscosities(sim);
+    yield_set_rate(&sim->yield, sim->params, buoyant, sim->scale);
+    yield_linearise(&sim->yield, k > 0 ? 0 : dt, r, eta, full);
+    set_shared(sim, dt, shared, all);
+    memcpy(all, eta, (size_t)mesh->nfaces_all * sizeof *all);
+    add_stress(sim, dt, rhs, shared, all, full);
+    solve(sim, TWO_FLUID_S, dt, all, mass, full,
+          sim->params->tolerance_viscous * sim->scale);
+    two_fluid_calm(sim);
+    mismatch = yield_advance(&sim->yield, dt, r, eta, u, k > 0);
+  }
+  scratch_give(&sim->scratch, __func__);
+  if (mismatch > FIT)
+    yield_say_misfit(&sim->yield, (long long)sim->model.step, k, mismatch, FIT,
+                     BAD);
+}
+
+/* Remember the velocity of a phase that viscosity has left, which is filled. */
+static void remember(struct two_fluid *sim, int phase) {
+  const size_t bytes = (size_t)sim->grid.mesh->ncells * sizeof(double);
+  for (int e = 0; e < DIM && sim->exact; e++)
+    memcpy(sim->held[phase][e]->v, sim->u[phase][e]->v, bytes);
+}
+
 static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
                         double *const star[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *cell[DIM + 1], *face[2], *a = sim->alpha_new->v;
+  double *cell[DIM + 1], *a = sim->alpha_new->v;
+  double *shared = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM + 1, cell);
-  scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   double **rhs = cell, *mass = cell[DIM];
   two_fluid_viscosities(sim);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
@@ -134,18 +212,14 @@ static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
     }
     mesh_touch(mesh, u_s);
   }
-  for (int k = 0; k < PICARD; k++) {
-    if (k > 0) {
-      two_fluid_calm(sim);
-      two_fluid_viscosities(sim);
-    }
-    set_shared(sim, dt, face[0], face[1]);
-    solve(sim, TWO_FLUID_S, dt, face[1], mass, rhs,
-          sim->params->tolerance_viscous * sim->scale);
-  }
+  if (sim->exact)
+    solve_yield(sim, dt, mass, rhs, shared, star);
+  else
+    solve_capped(sim, dt, mass, rhs, shared);
   two_fluid_calm(sim);
   two_fluid_shear_leaves(sim);
-  keep_solid(sim, dt, face[0], mass, rhs, star);
+  remember(sim, TWO_FLUID_S);
+  keep_solid(sim, dt, shared, mass, rhs, star);
   scratch_give(&sim->scratch, __func__);
 }
 
@@ -161,7 +235,8 @@ static void keep_fluid(struct two_fluid *sim, double dt,
     eta[1][f] = sim->eta_f[TWO_FLUID_F]->v[f] - eta[0][f];
   for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
     const struct viscosity part = {.eta_f = eta[k],
-                                   .kappa_f = sim->kappa_f[TWO_FLUID_F]->v};
+                                   .kappa_f = sim->kappa_f[TWO_FLUID_F]->v,
+                                   .skin = skin_of(sim, k)};
     field_arrays(sim->u[k], u[k]);
     viscous_force(mesh, &part, u[k], k == TWO_FLUID_S ? shared : own);
   }
@@ -194,6 +269,7 @@ static void solve_fluid(struct two_fluid *sim, double dt,
   least = -mesh_max(mesh, -least); /* what drag makes of an error in u_f */
   solve(sim, TWO_FLUID_F, dt, sim->eta_f[TWO_FLUID_F]->v, mass, rhs,
         least * sim->params->tolerance_viscous * sim->scale);
+  remember(sim, TWO_FLUID_F);
   keep_fluid(sim, dt, rhs, b);
   scratch_give(&sim->scratch, __func__);
 }

@@ -137,4 +137,21 @@ paste -d, <(tail -n 1 planes/series.csv | cut -d, -f5) \
   awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
   complain "two ranks have another front with planes"
 
+# with an exact yield: the same, and no bounds of a viscosity
+sed 's/alpha_start = phi,/&  regularisation = "exact",/' \
+  cliff.lua > exact.lua
+ends 0 "$talus" run exact.lua -o exact --quiet
+ends 5 "$talus" run exact.lua -o exact_parts --quiet --max-steps 9
+ends 0 "$talus" run exact.lua -o exact_parts --quiet --restart
+diff <(numbers exact) <(numbers exact_parts) > output ||
+  complain "a restart with an exact yield changes series.csv"
+ends 0 mpirun --oversubscribe -n 2 "$build/talus2d" run exact.lua \
+  -o exact_ranks --quiet
+paste -d, <(tail -n 1 exact/series.csv | cut -d, -f5) \
+  <(tail -n 1 exact_ranks/series.csv | cut -d, -f5) |
+  awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
+  complain "two ranks have another front with an exact yield"
+ends 2 "$talus" check exact.lua eta_max=1e5
+says 'grains.eta_max = 100000 has no meaning'
+
 [ "$failures" -eq 0 ]

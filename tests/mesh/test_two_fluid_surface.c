@@ -51,6 +51,28 @@ START_TEST(a_heap_stands) {
 }
 END_TEST
 
+/* With an exact yield the same heap holds: pressure stays, and nothing but the
+ * few grains that lie on leaves that are not full goes on. */
+START_TEST(a_heap_that_yields_exactly_holds) {
+  struct two_fluid_keys keys;
+  const struct params p = heap_params(&keys, TWO_FLUID_PLANES, 36.9);
+  keys.regularisation = TWO_FLUID_EXACT;
+  struct two_fluid *sim = grains_new(&p);
+  struct two_fluid_measures before, after;
+  two_fluid_properties(sim);
+  two_fluid_measure(sim, &before);
+  const bool done = grains_run(sim, 0.5, 300);
+  two_fluid_measure(sim, &after);
+  outline_free(&before.outline), outline_free(&after.outline);
+  two_fluid_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_ge(after.max_solid_pressure,
+                      0.99 * before.max_solid_pressure);
+  ck_assert_double_le(after.kinetic, 3e-4);
+  ck_assert_double_le(after.max_speed, 2e-3);
+}
+END_TEST
+
 /* A bed that ends within a leaf fills the part c of it, has the pressure of
  * half its own weight there, and lets grains out through its sides by c, not
  * through its top. */
@@ -95,6 +117,7 @@ Suite *two_fluid_surface_suite(void) {
   TCase *leaf = tcase_create("leaf"), *flow = tcase_create("flow");
   tcase_add_test(leaf, a_leaf_is_filled_in_part);
   if (DIM == 2) tcase_add_loop_test(flow, a_heap_stands, 0, 3);
+  if (DIM == 2) tcase_add_test(flow, a_heap_that_yields_exactly_holds);
   suite_add_tcase(suite, leaf);
   suite_add_tcase(suite, flow);
   return suite;

@@ -18,11 +18,17 @@ enum two_fluid_surface {
   TWO_FLUID_PLANES      /* surface.h */
 };
 
+enum two_fluid_regularisation {
+  TWO_FLUID_CLIP, /* their viscosity is at most eta_max */
+  TWO_FLUID_EXACT /* yield.h */
+};
+
 struct two_fluid_keys {
   struct two_fluid_closure closure; /* prepared by the model */
   enum two_fluid_fluid fluid;
   enum two_fluid_start start;
   enum two_fluid_surface surface;
+  enum two_fluid_regularisation regularisation; /* of the grains */
   double alpha_start;   /* solid fraction of a patched or dense start */
   double alpha_surface; /* the contour that is the surface */
   double phi_p;         /* plastic packing at the start */

@@ -24,7 +24,9 @@ void two_fluid_shear_leaves(struct two_fluid *sim);
  * gamma dt, else dense grains would shear far beyond the strain that makes them
  * hold before p_s is felt. Friction has p_s of both leaves of a face with X of
  * the shear rate there, and on walls the weight of the grains that lie on the
- * wall; faces to leaves without grains have none. Collective. */
+ * wall; faces to leaves without grains have none. With an exact yield eta_f is
+ * what friction has beyond that at rest, where X = 0, and yield.tau_y that.
+ * Collective. */
 void two_fluid_viscosities(struct two_fluid *sim);
 /* Return P of leaf i at a solid fraction alpha, at least that of surface.h
  * where the bed ends, with the phi_p that shear will have made of that of the
@@ -33,7 +35,8 @@ void two_fluid_viscosities(struct two_fluid *sim);
 double two_fluid_law(const struct two_fluid *sim, int32_t i, double alpha,
                      double dt, double *slope);
 /* Return the plastic packing of leaf i after dt of shear at alpha, beyond the
- * shear rate at which grains below their yield stress creep for eta_max. */
+ * shear rate at which grains below their yield stress creep for eta_max; with
+ * an exact yield faces that hold do not shear. */
 double two_fluid_next_packing(const struct two_fluid *sim, int32_t i,
                               double alpha, double dt);
 /* Give leaves without grains the velocity of the grains around them, else that

@@ -15,6 +15,9 @@
 #include "talus/scratch.h"
 #include "talus/solve.h"
 #include "talus/two_fluid/keys.h"
+#include "talus/yield.h"
+
+struct skin;
 
 /* Stages of a step (step.c). */
 enum two_fluid_stage {
@@ -52,9 +55,17 @@ struct two_fluid {
   struct field *flux; /* alpha u_s through faces, m/s, in the last step */
   struct field *j;    /* alpha u_s + (1 - alpha) u_f, likewise */
 
+  bool exact; /* the grains yield exactly, else by their viscosity */
+  struct yield yield;
+  struct skin *skin;     /* with an exact yield, of leaves that touch */
+  struct field *touches; /* the part of a leaf in which grains touch, from which
+                            its weight in tangential differences */
+
   /* Remade in every step */
-  struct field *alpha_new; /* at its end */
-  struct field *load;      /* p_s at its beginning, Pa */
+  struct field *alpha_new;                    /* at its end */
+  struct field *held[TWO_FLUID_NPHASES][DIM]; /* with an exact yield: velocities
+                              as viscosity leaves them, pressures included */
+  struct field *load;                         /* p_s at its beginning, Pa */
   struct field *hardening; /* what shear by 1 adds to p_s by dilatancy, Pa */
   struct field *p_s;       /* pressure of the grains, Pa */
   struct field *weight;    /* alpha, but nowhere 0: p_s is interpolated by it */
@@ -80,6 +91,7 @@ struct two_fluid {
                             adaptation, which follows it */
   struct field *phi;     /* solid fraction of the bed in a leaf; surface.h */
   struct field *rest;    /* s of surface.h, 0 but at the surface, Pa */
+  struct field *lack;    /* p_s less its mean over a leaf, Pa; surface.h */
   struct field *carried; /* load over half the weight of a leaf, at most 1 */
   struct field *normal[DIM]; /* planes of c */
   struct field *plane;

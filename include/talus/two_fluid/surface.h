@@ -20,6 +20,11 @@
  * grains above than it holds itself, which lie half a grain thick. c is of
  * alpha alone, so nothing else has to be carried or kept.
  *
+ * Across the vertical p_s is taken as the mean over the leaf, c p_s: what two
+ * leaves filled by c_0 and c_1 push on each other with is (c_0^2 - c_1^2)/2 of
+ * the weight, not (c_0 - c_1)/2 of it, which drives thin leaves off as if the
+ * surface was twice as steep or more.
+ *
  * The key grains.surface turns this on. It is not the default: heaps stand
  * (tests/mesh/test_two_fluid_surface.c), but grains at the top of flat beds,
  * some leaves wide, move sideways by 0.1 mm/s (docs/notes/two_fluid.md).

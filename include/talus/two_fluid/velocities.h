@@ -10,11 +10,12 @@
  *       = m_s (u_s^n + dt b_s) + theta m_f (u_f^n + dt b_f)
  *   (m_f + k) u_f - dt div tau_f(u_f) = m_f (u_f^n + dt b_f) + k u_s
  *
- * with tau_s of the shear rates of u^n and then of u_s. The fluid that is
- * eliminated from the first equation takes the part theta of its own viscosity
- * with it: where drag rules, both move as one, with the viscosity of both;
- * without that part tau_f would be explicit there. Kept are the viscous forces
- * alone,
+ * with tau_s of the shear rates of u^n and then of u_s, and with an exact yield
+ * that of yield.h, solved for up to eight times until it fits. The fluid that
+ * is eliminated from the first equation takes the part theta of its own
+ * viscosity with it: where drag rules, both move as one, with the viscosity of
+ * both; without that part tau_f would be explicit there. Kept are the viscous
+ * forces alone,
  *
  *   u_s* = u_s^n + dt div tau_s/m_s
  *   u_f* = u_f^n + dt div(theta tau_f(u_s) + (1 - theta) tau_f(u_f))/m_f
