@@ -188,6 +188,42 @@ START_TEST(grains_carry_tracers) {
 }
 END_TEST
 
+/* A block in the corner of a box knows no difference between the horizontal
+ * axes: moments of the solid fraction and of both velocities turned round. */
+START_TEST(horizontal_axes_are_alike) {
+  struct two_fluid_keys keys = grains_keys(
+      TWO_FLUID_CRITICAL_STATE, _i ? TWO_FLUID_AIR : TWO_FLUID_WATER);
+  struct params p = grains_params(&keys, 0.16, LEVEL);
+  p.level_min = LEVEL - 1;
+  p.criterion[p.ncriteria++] = (struct criterion){
+      .type = CRITERION_INTERFACE, .level = LEVEL, .width = 1};
+  p.shape = (struct function){block, NULL};
+  p.tolerance_pressure = p.tolerance_viscous = 1e-8;
+  struct two_fluid *sim = grains_new(&p);
+  const bool done = grains_run(sim, 0.1, 100);
+  const struct mesh *mesh = sim->grid.mesh;
+  double moment[3][2] = {{0}}, speed = 0;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int d = 0; d < 2; d++) {
+      const double x = mesh->x[i][d], y = mesh->x[i][1 - d];
+      const double weight = mesh_volume(mesh, i) * x * x * y;
+      moment[0][d] += weight * sim->alpha->v[i];
+      for (int k = 0; k < TWO_FLUID_NPHASES; k++)
+        moment[1 + k][d] += weight * sim->u[k][d]->v[i] * sim->alpha->v[i];
+      speed = fmax(speed, sim->u[TWO_FLUID_S][d]->v[i]);
+    }
+  }
+  for (int k = 0; k < 3; k++)
+    for (int d = 0; d < 2; d++) moment[k][d] = mesh_sum(mesh, moment[k][d]);
+  speed = mesh_max(mesh, speed);
+  two_fluid_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_ge(speed, 0.01);
+  for (int k = 0; k < 3; k++)
+    ck_assert_double_eq_tol(moment[k][0] / moment[k][1], 1, 1e-6);
+}
+END_TEST
+
 Suite *two_fluid_suite(void) {
   Suite *suite = suite_create("two_fluid");
   TCase *keys = tcase_create("keys"), *rest = tcase_create("rest");
@@ -196,6 +232,7 @@ Suite *two_fluid_suite(void) {
   if (DIM == 2) tcase_add_loop_test(rest, a_plastic_bed_rests, 0, 2);
   tcase_add_test(flow, a_bed_falls_and_lands);
   tcase_add_test(flow, grains_carry_tracers);
+  if (DIM == 3) tcase_add_loop_test(flow, horizontal_axes_are_alike, 0, 2);
   tcase_add_loop_test(flow, uniform_motion_stays, 0, DIM == 2 ? 2 : 1);
   suite_add_tcase(suite, keys);
   suite_add_tcase(suite, rest);
