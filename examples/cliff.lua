@@ -18,7 +18,7 @@
 -- Numbers. The regime follows from St = sqrt(rho_s (rho_s - rho_f) g d^3/2)/(18
 -- eta) and r = sqrt(rho_s/rho_f), which `talus check` prints. Grains 2560 kg/m^3.
 --
--- Source. B. Busch & S. T. Johansen, On the validity of the two-fluid-KTGF
+-- Source. A. Busch & S. T. Johansen, On the validity of the two-fluid-KTGF
 -- approach for dense gravity-driven granular flows as implemented in ANSYS Fluent
 -- R17.2, Powder Technol. 364 (2020) 429, whose closures are closure="ktgf". Its
 -- figures: tools/figure.py busch_johansen_2020.
