@@ -31,7 +31,7 @@
 -- strength yet (docs/notes/two_fluid.md).
 --
 -- Try. fluid=water, fluid=pac4 d=1e-4 stop=20, a=2, closure=ktgf,
--- closure=mu_i_phi_i; surface=planes: a heap that stands.
+-- closure=mu_i_phi_i; surface=planes regularisation=exact: a heap that stands.
 
 local fluid = param("fluid", "air", "air, water, pac2 or pac4")
 local a = param("a", 1, "height over length")
@@ -40,7 +40,8 @@ local cells = param("cells", 16, "finest leaves to x_0")
 local reach = param("reach", 4, "least length of the box, in x_0")
 local gate = param("gate", 0, "1: the gate stays, a bed from wall to wall")
 local stop = param("stop", 1, "time of the end, s")
-local eta_max = param("eta_max", 0, "cap on viscosity, Pa s; 0: by the height")
+local regularisation = param("regularisation", "clip", "of friction: clip, exact")
+local eta_max = param("eta_max", 0, "cap of clip, Pa s; 0: by the height")
 
 -- the box is 4 x_0 high, or more, so that leaves are x_0/cells; with the gate a
 -- quarter as long
@@ -68,7 +69,8 @@ return {
     start = param("start", "settled", "settled, patched or dense"),
     alpha_start = param("alpha", 0.6, "solid fraction, unless settled"),
     surface = param("surface", "none", "of the bed: none, planes"),
-    eta_max = eta_max,
+    regularisation = regularisation,
+    eta_max = regularisation == "clip" and eta_max or nil,
   },
   fluid = fluid,
   closure = param("closure", "critical_state", "closures of the grains"),

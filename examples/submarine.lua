@@ -56,6 +56,7 @@ return {
     shape = function(x, y) return math.min(0.06 - x, height - y) end,
     density = 2500, d = 0.225e-3,
     start = "dense", alpha_start = alpha, surface = surface,
+    regularisation = param("regularisation", "clip", "of friction: clip, exact"),
   },
   fluid = { density = 1010, eta_0 = 0.012 },
   closure = closure,
