@@ -24,7 +24,8 @@ enum { MOST_NEWTON = 40 };
 enum { MOST_PASSES = 4 };
 /* A face has at least this part of the mean mass of its leaves. */
 #define LEAST_LENT 0.1
-/* Still grains are slower than this part of what gravity gives in a step. */
+/* Still grains and the fluid past them are slower than this part of what
+ * gravity gives in a step. */
 #define SLOW 0.1
 
 /* Give the solid fractions that both leaves lend to face f of axis d. */
@@ -146,8 +147,8 @@ static void set_means(struct two_fluid *sim) {
 }
 
 /* Set the field still to how still the grains of leaves are, 1: at rest; 0
- * where they move by SLOW of what gravity gives them in dt, or carry nothing.
- */
+ * where they or the fluid past them move by SLOW of what gravity gives in dt,
+ * or where they carry nothing. */
 static void find_still(struct two_fluid *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   double g2 = 0;
@@ -155,43 +156,53 @@ static void find_still(struct two_fluid *sim, double dt) {
     g2 += sim->params->gravity[d] * sim->params->gravity[d];
   const double slow = max2(SLOW * dt * sqrt(g2), 1e-300);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double u2 = 0;
+    double u2 = 0, slip2 = 0;
     for (int e = 0; e < DIM; e++) {
       const double u = sim->u[TWO_FLUID_S][e]->saved[i];
-      u2 += u * u;
+      const double slip = sim->u[TWO_FLUID_F][e]->saved[i] - u;
+      u2 += u * u, slip2 += slip * slip;
     }
     const double c = sim->rest->v[i] > 0 ? sim->c->v[i] : 1;
-    sim->yield.still->v[i] =
-        min2(sim->touches->v[i] / c, 1) * max2(0, 1 - sqrt(u2) / slow);
+    sim->yield.still->v[i] = min2(sim->touches->v[i] / c, 1) *
+                             max2(0, 1 - sqrt(u2) / slow) *
+                             max2(0, 1 - slip2 / (slow * slow));
   }
   mesh_fill_ghosts(mesh, 1, &sim->yield.still->v);
 }
 
-/* Let w of faces between still grains be such that the forces of before would
- * leave them with what viscosity has left the leaves with. */
+/* Set `own` [nfaces_all] to what p_s and weight give the grains at faces of
+ * axis d, m/s^2, and the field `pushed` to what they give the leaves. */
+static void find_pushes(struct two_fluid *sim, int d, double *own) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *leaf = sim->pushed->v;
+  memset(own, 0, (size_t)mesh->nfaces_all * sizeof *own);
+  for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+    const struct two_fluid_pair pair = pair_of(sim, 0, d, f);
+    if (!two_fluid_is_side(sim, f))
+      own[f] = force_of(sim, d, f, &pair) / pair.rho_s;
+  }
+  mesh_fill_faces(mesh, 1, &own);
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    leaf[i] = share_of(sim, TWO_FLUID_S, d, i, own);
+  mesh_touch(mesh, leaf);
+  field_fill(mesh, sim->pushed);
+}
+
+/* Let what p_s and weight of before give the leaves cancel in w, between still
+ * grains, with what they give the face. */
 static void hold_still(struct two_fluid *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const double *still = sim->yield.still->v;
+  double *own = sim->force_f->v;
   find_still(sim, dt);
   for (int d = 0; d < DIM; d++) {
+    find_pushes(sim, d, own);
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *leaf = mesh->face_leaf[f];
       if (two_fluid_is_side(sim, f) || leaf[0] < 0 || leaf[1] < 0) continue;
       const double part = min2(still[leaf[0]], still[leaf[1]]);
-      if (!(part > 0)) continue;
-      const struct two_fluid_pair pair = pair_of(sim, dt, d, f);
-      const double slope = mesh_gradient(mesh, sim->p->v, f);
-      const double u_s =
-          mean_at(sim, TWO_FLUID_S, d, f, sim->held[TWO_FLUID_S][d]->v);
-      const double u_f =
-          mean_at(sim, TWO_FLUID_F, d, f, sim->held[TWO_FLUID_F][d]->v);
-      const double slip = u_s - u_f;
-      const double c_f = pair.drag * pair.phi / (1 - pair.phi);
-      const double force_s = force_of(sim, d, f, &pair) - slope;
-      const double w_s = u_s + (pair.drag * slip - dt * force_s) / pair.rho_s;
-      const double w_f = u_f - (c_f * slip - dt * slope) / pair.rho_f;
-      sim->w_f[TWO_FLUID_S]->v[f] += part * (w_s - sim->w_f[TWO_FLUID_S]->v[f]);
-      sim->w_f[TWO_FLUID_F]->v[f] += part * (w_f - sim->w_f[TWO_FLUID_F]->v[f]);
+      const double mean = mean_at(sim, TWO_FLUID_S, d, f, sim->pushed->v);
+      sim->w_f[TWO_FLUID_S]->v[f] += part * dt * (mean - own[f]);
     }
   }
 }

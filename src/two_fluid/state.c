@@ -156,13 +156,7 @@ static void add_yield(struct two_fluid *sim) {
   yield->scratch = &sim->scratch;
   yield->eta = sim->eta_f[TWO_FLUID_S];
   yield->shear = sim->shear_f[TWO_FLUID_S];
-  static const char *const held[TWO_FLUID_NPHASES][3] = {
-      {"solid_held_x", "solid_held_y", "solid_held_z"},
-      {"fluid_held_x", "fluid_held_y", "fluid_held_z"}};
-  for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
-    for (int d = 0; d < DIM; d++)
-      sim->held[k][d] = add(sim, held[k][d], "m/s", "", NULL, false);
-  }
+  sim->pushed = add(sim, "pushed", "m/s^2", "", NULL, false);
   sim->touches = add(sim, "touches", "1", "", NULL, false);
   sim->skin = skin_new();
   yield->skin = &sim->skin;

@@ -181,13 +181,6 @@ static void solve_yield(struct two_fluid *sim, double dt, const double *mass,
                      BAD);
 }
 
-/* Remember the velocity of a phase that viscosity has left, which is filled. */
-static void remember(struct two_fluid *sim, int phase) {
-  const size_t bytes = (size_t)sim->grid.mesh->ncells * sizeof(double);
-  for (int e = 0; e < DIM && sim->exact; e++)
-    memcpy(sim->held[phase][e]->v, sim->u[phase][e]->v, bytes);
-}
-
 static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
                         double *const star[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
@@ -218,7 +211,6 @@ static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
     solve_capped(sim, dt, mass, rhs, shared);
   two_fluid_calm(sim);
   two_fluid_shear_leaves(sim);
-  remember(sim, TWO_FLUID_S);
   keep_solid(sim, dt, shared, mass, rhs, star);
   scratch_give(&sim->scratch, __func__);
 }
@@ -269,7 +261,6 @@ static void solve_fluid(struct two_fluid *sim, double dt,
   least = -mesh_max(mesh, -least); /* what drag makes of an error in u_f */
   solve(sim, TWO_FLUID_F, dt, sim->eta_f[TWO_FLUID_F]->v, mass, rhs,
         least * sim->params->tolerance_viscous * sim->scale);
-  remember(sim, TWO_FLUID_F);
   keep_fluid(sim, dt, rhs, b);
   scratch_give(&sim->scratch, __func__);
 }

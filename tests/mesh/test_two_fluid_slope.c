@@ -66,7 +66,8 @@ START_TEST(a_layer_slides_beyond_repose) {
 END_TEST
 
 /* Dense grains stay: they would have to expand, and have less than twice the
- * pressure that holds them. */
+ * pressure that holds them. With an exact yield what moves is how fast they do,
+ * as suction lets liquid in. */
 START_TEST(a_dense_layer_stays) {
   double z[] = {-1, H}, rough, most = 0;
   struct two_fluid_keys keys;
@@ -81,7 +82,7 @@ START_TEST(a_dense_layer_stays) {
   most = mesh_max(sim->grid.mesh, most);
   two_fluid_destroy(sim);
   ck_assert(done);
-  ck_assert_double_le(u, _i ? 1e-6 : 3e-5);
+  ck_assert_double_le(u, _i ? 5e-6 : 3e-5);
   ck_assert_double_le(most, 50); /* Pa; weight 37, to hold 40 */
 }
 END_TEST

@@ -30,12 +30,12 @@
  * their faces of u - w, and slip that this does not see is dragged in the leaf.
  * Where fluid enters or leaves the box grains do not.
  *
- * Still grains. w of leaves has what the forces of before do to leaves, and (1)
- * and (2) what they do to faces, so that dt (a_f - F A a_f) goes through the
- * faces of grains that an exact yield holds. There w is such that the forces of
- * before leave the face with F of what viscosity has left the leaves with, and
- * p, p_s move grains by what they change; by a part that falls to 0 where
- * grains have 0.1 dt g.
+ * Still grains. w of leaves has what p_s and weight of before do to leaves, and
+ * (1) what they do to faces, so that dt (a_f - F A a_f) goes through the faces
+ * of grains that an exact yield holds. There w lacks it, by the part
+ *   (1 - |u_s|/U) (1 - |u_f - u_s|^2/U^2),  U = 0.1 dt |g|,
+ * neither factor below 0. p of the fluid keeps its own, which damps odd and
+ * even pressures.
  *
  * Contact. The grains of a leaf lean on a face across the vertical by
  *   chi = min(1, p_s/(h/2 (rho_s - rho_f) alpha g)),

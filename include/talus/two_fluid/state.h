@@ -62,10 +62,10 @@ struct two_fluid {
                             its weight in tangential differences */
 
   /* Remade in every step */
-  struct field *alpha_new;                    /* at its end */
-  struct field *held[TWO_FLUID_NPHASES][DIM]; /* with an exact yield: velocities
-                              as viscosity leaves them, pressures included */
-  struct field *load;                         /* p_s at its beginning, Pa */
+  struct field *alpha_new; /* at its end */
+  struct field *pushed;    /* with an exact yield: by p_s and weight along an
+                              axis, m/s^2 */
+  struct field *load;      /* p_s at its beginning, Pa */
   struct field *hardening; /* what shear by 1 adds to p_s by dilatancy, Pa */
   struct field *p_s;       /* pressure of the grains, Pa */
   struct field *weight;    /* alpha, but nowhere 0: p_s is interpolated by it */
