@@ -15,8 +15,8 @@
  * + q): P is convex, so nu never crosses a pole and no damping is needed. Where
  * grains begin to touch, P' is 0 and rises with a power of p: then p grows by a
  * factor per iteration only, and P' is taken ahead (`ahead`); as R vanishes it
- * is P' of nu again. At
- * the end nu is that of the fluxes, so that mass is kept to round-off.
+ * is P' of nu again. At the end nu is that of the fluxes, so that mass is kept
+ * to round-off.
  */
 #ifndef TALUS_GRANULAR_PRESSURE_H
 #define TALUS_GRANULAR_PRESSURE_H

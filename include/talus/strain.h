@@ -46,9 +46,8 @@ static inline double strain_norm_squared(int n, double *const rows[STRAIN_ROWS],
 void strain_shear_rate(const struct mesh *mesh, const struct skin *skin,
                        double *const u[DIM], double *shear_f);
 /* slide_f [nfaces] = sqrt(2 (D:D - (tr D)^2)), in rings with the hoop in both,
- * 0 where that is negative: the
- * shear rate of a flow that keeps its volume, and 0 of one that is squeezed
- * along one axis alone. */
+ * 0 where that is negative: the shear rate of a flow that keeps its volume, and
+ * 0 of one that is squeezed along one axis alone. */
 void strain_sliding_rate(const struct mesh *mesh, double *const u[DIM],
                          double *slide_f);
 /* rows [strain_rows][nfaces_all]: D, 1/s. Collective. */

@@ -25,6 +25,7 @@
  * is not extrapolated is kept this much smaller, for its direction. */
 #define AGREE 0.99
 #define FORGOTTEN 1e-3
+
 static struct field *add(struct fields *fields, const struct mesh *mesh,
                          const char *name, const char *unit,
                          const char *title) {
