@@ -40,7 +40,7 @@ if status.exists():
     status.unlink()
     sys.exit(code)
 PYTHON
-sed -i "1i#!$python" talus
+sed -i "1i#!/usr/bin/env $python" talus
 chmod +x talus
 echo "return {}" > case.lua
 
