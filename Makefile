@@ -116,13 +116,13 @@ demo: setup ## column collapse with pictures: half a minute on two cores, mostly
 	$(BUILD)/talus plot $(BUILD)/demo
 	@echo "The pictures are in $(BUILD)/demo:"; ls $(BUILD)/demo/*.[pg][ni][gf]
 
-check: setup ## all tests, in three minutes
+check: setup ## all tests, in a quarter of an hour on two cores
 	$(AGAIN) all tests
 	@tests/run.sh $(BUILD) format includes unit mesh case
 check-unit check-mesh check-case: check-%: ## one group of them
 	$(AGAIN) all tests
 	@tests/run.sh $(BUILD) $*
-convergence: ## proof of the numbers in five minutes; CASE=NAME, CASE=short
+convergence: ## proof of the numbers in half an hour; CASE=NAME, CASE=short
 	$(AGAIN) all $(PROOFS)
 	@tests/convergence/run.sh $(BUILD) $(CASE)
 bench: ## speed and memory, beside Gerris where it is installed; JOB=NAME
