@@ -8,19 +8,23 @@
  * mean over the two faces of a leaf across an axis. In the order of the calls:
  *
  * two_fluid_time_step    dt, by what carries
- * two_fluid_properties   planes of the surface, K, Theta, p_s = P(alpha^n),
- * with gamma of u^n two_fluid_velocities   velocities.h b = A(forces of p, p_s
- * and weight) (m_s + theta m_f) u_s - dt div(tau_s + theta tau_f) = ..., twice,
- * with eta_s of gamma of u^n and then of u_s (m_f + k) u_f - dt div tau_f = ...
+ * two_fluid_properties   planes of the surface, K, Theta, p_s = P(alpha^n)
+ *     with gamma of u^n
+ * two_fluid_velocities   velocities.h
+ *     b = A(forces of p, p_s and weight)
+ *     (m_s + theta m_f) u_s - dt div(tau_s + theta tau_f) = ...
+ *         twice, with eta_s of gamma of u^n and then of u_s, or until the
+ *         stress of an exact yield fits
+ *     (m_f + k) u_f - dt div tau_f = ...
  *     u <- u^n + dt div tau/m
  * two_fluid_pressures    pressures.h, until j stays
- *     w = F(u)
+ *     w = F(u), less what still grains of an exact yield leak
  *     u_s_f = [rho_s w_s - rho_f w_f + N j + dt (rho_s - rho_f) g
  *              - dt grad p_s^{n+1}/alpha]/M
  *     alpha^{n+1} = alpha^n - dt div(alpha u_s_f),  p_s^{n+1} = P(alpha^{n+1})
  *     div(lambda grad p) = div j / dt,  j = alpha u_s_f + a u_f_f
  *     u <- u + A(u_f - w)
- * two_fluid_transport    u, phi_p and X with the same fluxes
+ * two_fluid_transport    u, phi_p, X and tracers with the same fluxes
  *     alpha^{n+1} q = alpha^n q - dt div(alpha u_s_f q_f)
  * shear_grains
  *     phi_p <- phi_p exp(- delta gamma dt),   X towards its value at gamma

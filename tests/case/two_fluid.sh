@@ -23,6 +23,28 @@ numbers() {
   sed 's/,[^,]*$//' "$1/series.csv"
 }
 
+# goes_on CASE WHAT: runs CASE.lua into CASE; a restart changes nothing
+goes_on() {
+  ends 0 "$talus" run "$1.lua" -o "$1" --quiet
+  ends 5 "$talus" run "$1.lua" -o "$1_parts" --quiet --max-steps 9
+  ends 0 "$talus" run "$1.lua" -o "$1_parts" --quiet --restart
+  diff <(numbers "$1") <(numbers "$1_parts") > output ||
+    complain "a restart changes series.csv $2"
+  diff "$1/profile.csv" "$1_parts/profile.csv" > output ||
+    complain "a restart changes profile.csv $2"
+}
+
+# agrees CASE RANKS WHAT: RANKS have the front of the run CASE, but for what the
+# solvers' tolerance lets through
+agrees() {
+  ends 0 mpirun --oversubscribe -n "$2" "$build/talus2d" run "$1.lua" \
+    -o "$1_ranks" --quiet
+  paste -d, <(tail -n 1 "$1/series.csv" | cut -d, -f5) \
+    <(tail -n 1 "$1_ranks/series.csv" | cut -d, -f5) |
+    awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
+    complain "$2 ranks have another front $3"
+}
+
 cat > cliff.lua << 'END'
 local phi = param("phi", 0.6, "solid fraction")
 return {
@@ -40,21 +62,8 @@ return {
   output = { stop = param("stop", 0.1, "s") },
 }
 END
-ends 0 "$talus" run cliff.lua -o whole --quiet
-ends 5 "$talus" run cliff.lua -o parts --quiet --max-steps 9
-ends 0 "$talus" run cliff.lua -o parts --quiet --restart
-diff <(numbers whole) <(numbers parts) > output ||
-  complain "a restart changes series.csv"
-diff whole/profile.csv parts/profile.csv > output ||
-  complain "a restart changes profile.csv"
-
-ends 0 mpirun --oversubscribe -n 2 "$build/talus2d" run cliff.lua -o ranks \
-  --quiet
-# fronts differ by less than the solvers' tolerance lets through
-paste -d, <(tail -n 1 whole/series.csv | cut -d, -f5) \
-  <(tail -n 1 ranks/series.csv | cut -d, -f5) |
-  awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
-  complain "two ranks have another front"
+goes_on cliff "of a cliff"
+agrees cliff 2 "of a cliff"
 
 ends 2 "$talus" run cliff.lua phi=0.7 start=patched -o wrong
 says 'densest packing of these closures is 0.63'
@@ -100,57 +109,26 @@ done
 # tracers: what a profile has of them stays, over a restart too
 sed 's/domain = /tracers = { low = function(x, y) return 0.05 - y end }, &/' \
   cliff.lua > tracer.lua
-ends 0 "$talus" run tracer.lua -o tracer --quiet
-ends 5 "$talus" run tracer.lua -o tracer_parts --quiet --max-steps 9
-ends 0 "$talus" run tracer.lua -o tracer_parts --quiet --restart
-diff tracer/profile.csv tracer_parts/profile.csv > output ||
-  complain "a restart changes tracers"
+goes_on tracer "with tracers"
 awk -F, 'NR > 1 { h[$1] += $3; low[$1] += $4 }
          END { for (t in h) if (low[t] / h[t] < 0.5 || low[t] / h[t] > 0.52)
                  exit 1 }' tracer/profile.csv || complain "tracers get lost"
 
 # rings: restart and ranks
 sed 's/dimension = /coordinates = "axisymmetric", &/' cliff.lua > ring.lua
-ends 0 "$talus" run ring.lua -o rings --quiet
-ends 5 "$talus" run ring.lua -o rings_parts --quiet --max-steps 9
-ends 0 "$talus" run ring.lua -o rings_parts --quiet --restart
-diff <(numbers rings) <(numbers rings_parts) > output ||
-  complain "a restart changes series.csv in rings"
-ends 0 mpirun --oversubscribe -n 3 "$build/talus2d" run ring.lua \
-  -o rings_ranks --quiet
-paste -d, <(tail -n 1 rings/series.csv | cut -d, -f5) \
-  <(tail -n 1 rings_ranks/series.csv | cut -d, -f5) |
-  awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
-  complain "three ranks have another front in rings"
+goes_on ring "in rings"
+agrees ring 3 "in rings"
 
 # with the surface in closures and fluxes: restart and ranks
 sed 's/alpha_start = phi,/&  surface = "planes",/' cliff.lua > planes.lua
-ends 0 "$talus" run planes.lua -o planes --quiet
-ends 5 "$talus" run planes.lua -o planes_parts --quiet --max-steps 9
-ends 0 "$talus" run planes.lua -o planes_parts --quiet --restart
-diff <(numbers planes) <(numbers planes_parts) > output ||
-  complain "a restart with planes changes series.csv"
-ends 0 mpirun --oversubscribe -n 2 "$build/talus2d" run planes.lua \
-  -o planes_ranks --quiet
-paste -d, <(tail -n 1 planes/series.csv | cut -d, -f5) \
-  <(tail -n 1 planes_ranks/series.csv | cut -d, -f5) |
-  awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
-  complain "two ranks have another front with planes"
+goes_on planes "with planes"
+agrees planes 2 "with planes"
 
 # with an exact yield: the same, and no bounds of a viscosity
 sed 's/alpha_start = phi,/&  regularisation = "exact",/' \
   cliff.lua > exact.lua
-ends 0 "$talus" run exact.lua -o exact --quiet
-ends 5 "$talus" run exact.lua -o exact_parts --quiet --max-steps 9
-ends 0 "$talus" run exact.lua -o exact_parts --quiet --restart
-diff <(numbers exact) <(numbers exact_parts) > output ||
-  complain "a restart with an exact yield changes series.csv"
-ends 0 mpirun --oversubscribe -n 2 "$build/talus2d" run exact.lua \
-  -o exact_ranks --quiet
-paste -d, <(tail -n 1 exact/series.csv | cut -d, -f5) \
-  <(tail -n 1 exact_ranks/series.csv | cut -d, -f5) |
-  awk -F, '{ d = $1 - $2; exit !(d < 1e-5 && d > -1e-5) }' ||
-  complain "two ranks have another front with an exact yield"
+goes_on exact "with an exact yield"
+agrees exact 2 "with an exact yield"
 ends 2 "$talus" check exact.lua eta_max=1e5
 says 'grains.eta_max = 100000 has no meaning'
 
