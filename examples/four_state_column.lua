@@ -78,6 +78,8 @@ return {
     delta = param("delta", 0.58, "its exponent"),
     K = param("K", 1e8, "stiffness of the packing, Pa"),
     chi = param("chi", 1.5, "exponent of its pressure"),
+    regularisation = param("regularisation", "exponential",
+                           "exponential, by n, or exact"),
     n = param("n", 1e5, "regularisation of friction, s"),
     start = param("start", "balance", "balance or uniform"),
     nu_start = param("nu_start", 0.575, "solid fraction of a uniform start"),

@@ -40,6 +40,8 @@ local cells = param("cells", 16, "finest cells to r_i, a power of 2")
 local r_i = param("r_i", 0.1, "radius of the column, m")
 local d = param("d", 1.15e-3, "grain diameter, m")
 local eta_S = param("eta_S", 0.42, "friction coefficient at rest")
+local regularisation = param("regularisation", "exponential",
+                             "of friction: exponential or exact")
 local stop = param("stop", 6, "time of the end, in sqrt(a r_i/g)")
 local snapshots = param("snapshots", 0.5, "interval of snapshots, likewise")
 
@@ -61,7 +63,7 @@ return {
              level = math.floor(math.log(size * cells, 2) + 0.5) },
   gravity = flat and { 0, -g } or { 0, 0, -g },
   grains = {
-    rho_d = 2500, d = d, eta_S = eta_S,
+    rho_d = 2500, d = d, eta_S = eta_S, regularisation = regularisation,
     shape = function(x, y, z)
       if flat then return math.min(r_i - x, a * r_i - y) end
       return math.min(r_i - math.sqrt(x^2 + y^2), a * r_i - z)

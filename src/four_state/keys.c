@@ -7,6 +7,9 @@
 /* enum four_state_start */
 static const char *const STARTS[] = {"balance", "uniform", NULL};
 
+/* enum four_state_regularisation */
+static const char *const REGULARISATIONS[] = {"exponential", "exact", NULL};
+
 /* clang-format off */
 static const struct key KEYS[] = {
     {"grains.rho_d", KEY_NUMBER, KEY_POSITIVE, KEY_DEFAULT "2500", .unit = "kg/m^3",
@@ -33,6 +36,11 @@ static const struct key KEYS[] = {
      .offset = PARAM(K), .help = "stiffness of the packing"},
     {"grains.chi", KEY_NUMBER, .low = 0.1, .high = 10, KEY_DEFAULT "1.5",
      .unit = "", .offset = PARAM(CHI), .help = "exponent of its pressure"},
+    {"grains.regularisation", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "exponential",
+     .unit = "", .offset = AT(regularisation), .choices = REGULARISATIONS,
+     .help = "friction at small shear rates: exponential falls to 0, by n, as in "
+             "the paper; exact keeps the stress of grains at rest, which then "
+             "hold still"},
     {"grains.n", KEY_NUMBER, KEY_POSITIVE, KEY_DEFAULT "1e5", .unit = "s",
      .offset = PARAM(N), .help = "regularisation 1 - exp(-n gamma/2) of friction"},
     {"grains.g0_exponent", KEY_NUMBER, .low = 0.5, .high = 3, KEY_DEFAULT "1",

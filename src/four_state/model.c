@@ -31,6 +31,8 @@ static struct model *model_of(struct four_state *sim) {
 static void describe(const struct params *params, size_t size, char *text) {
   const struct four_state_keys *keys = params->own;
   const double gamma = 2 * log(100) / keys->param[LEE_HUANG_N];
+  text[0] = '\0';
+  if (keys->regularisation == FOUR_STATE_EXACT) return;
   snprintf(
       text, size,
       "friction is reached at a shear rate of 2 ln(100)/n = %.3g/s: slopes "
@@ -91,8 +93,9 @@ static bool is_at_rest(struct model *model) {
 
 static void outputs(struct model *model, bool make) {
   struct four_state *sim = of(model);
-  struct field *made[] = {sim->contact, sim->name};
-  for (int k = 0; k < 2; k++) {
+  struct field *yields = sim->yield.state; /* NULL unless exact */
+  struct field *made[] = {sim->contact, sim->name, yields};
+  for (int k = 0; k < (yields ? 3 : 2); k++) {
     mem_free(made[k]->v);
     made[k]->v = make ? MEM_NEW(double, sim->grid.mesh->nleaves) : NULL;
   }
@@ -101,6 +104,7 @@ static void outputs(struct model *model, bool make) {
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
     sim->c->v[i] = min2(sim->nu->v[i] / sim->keys->nu_start, 1);
   mesh_touch(sim->grid.mesh, sim->c->v);
+  if (yields) yield_find_state(&sim->yield, sim->c->v, yields->v);
 }
 
 /* Columns of series.csv */

@@ -10,6 +10,9 @@
 /* A face that leads to no grains weighs this part of one that does, so that
  * parts are defined where there are none around. */
 static const double LIGHT = 1e-12;
+/* Weights of leaves in tangential differences where grains do not touch and
+ * where there are none. */
+static const double LOOSE = 1e-3, NO_GRAINS = 1e-6;
 /* Masses below this are none. */
 static const double NO_MASS = 1e-30;
 
@@ -98,6 +101,31 @@ static void fill_positive(struct four_state *sim) {
   mesh_fill_potential(mesh, sim->weight->v, 1, &sim->p->v, &bc, false);
 }
 
+/* Find how well grains touch, 1 where they carry at least half the weight of a
+ * leaf, and the faces beside leaves in which they do not: what moves there is
+ * not continued by the grains of a bed. */
+static void find_skin(struct four_state *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *m = sim->touches->v, g2 = 0;
+  for (int d = 0; d < DIM; d++)
+    g2 += sim->params->gravity[d] * sim->params->gravity[d];
+  const double weight = sim->closure.param[LEE_HUANG_RHO_D] * sqrt(g2);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double half = 0.5 * weight * mesh->h[i] * sim->nu->v[i];
+    m[i] = NO_GRAINS;
+    if (!four_state_has_grains(sim, i)) continue;
+    m[i] = half > 0 ? min2(max2(sim->p->v[i], 0) / half, 1) : 1;
+    m[i] = max2(m[i], LOOSE);
+  }
+  mesh_touch(mesh, m);
+  field_fill(mesh, sim->touches);
+  for (int32_t i = mesh->begin_virtual; i < mesh->ncells; i++)
+    m[i] = min2(max2(m[i], NO_GRAINS), 1);
+  sim->skin->n = 0; /* it may be that of an earlier mesh */
+  sim->skin->grains_only = true;
+  skin_find(mesh, m, 1, sim->skin);
+}
+
 void four_state_properties(struct four_state *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct four_state_closure *c = &sim->closure;
@@ -115,6 +143,7 @@ void four_state_properties(struct four_state *sim) {
   fill_positive(sim);
   set_upper(sim);
   set_mobility(sim);
+  find_skin(sim);
 }
 
 /* Return the pressure of contact on a wall, with the weight of the grains that
@@ -133,7 +162,7 @@ static double wall_pressure(const struct four_state *sim, int d, int32_t f) {
 }
 
 void four_state_shear(struct four_state *sim, double *const u[]) {
-  strain_shear_rate(sim->grid.mesh, NULL, u, sim->shear_f->v);
+  strain_shear_rate(sim->grid.mesh, sim->skin, u, sim->shear_f->v);
   field_fill_faces(sim->grid.mesh, sim->shear_f);
 }
 
@@ -145,13 +174,18 @@ void four_state_viscosity(struct four_state *sim, double *const u[]) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *node = mesh->face_node[f];
       sim->eta_f->v[f] = sim->kappa_f->v[f] = 0;
+      if (sim->exact) sim->yield.tau_y->v[f] = 0;
       if (nu[node[0]] < none || nu[node[1]] < none) continue;
       const double p_E =
           mesh->face_patch[f] >= 0
               ? wall_pressure(sim, d, f)
               : 0.5 * (sim->p_E->v[node[0]] + sim->p_E->v[node[1]]);
-      const double mu_E =
-          four_state_contact_viscosity(&sim->closure, p_E, sim->shear_f->v[f]);
+      double mu_E = 0;
+      if (sim->exact)
+        sim->yield.tau_y->v[f] = sim->closure.param[LEE_HUANG_ETA_S] * p_E;
+      else
+        mu_E = four_state_contact_viscosity(&sim->closure, p_E,
+                                            sim->shear_f->v[f]);
       sim->eta_f->v[f] =
           mu_E + 0.5 * (sim->mu_K->v[node[0]] + sim->mu_K->v[node[1]]);
       /* lambda of the stress is kappa - 2/3 eta, and friction has none */
@@ -161,6 +195,27 @@ void four_state_viscosity(struct four_state *sim, double *const u[]) {
   }
   field_fill_faces(mesh, sim->eta_f);
   field_fill_faces(mesh, sim->kappa_f);
+}
+
+/* Fill accelerations a and thrusts of faces. A side of a coarse leaf gets the
+ * mean by mass of its finer faces: one that leads to hardly any grains is
+ * accelerated by pressure as they are, which is no acceleration of the leaf. */
+static void fill_by_mass(struct four_state *sim, double *a, double *thrusts) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *face[3];
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, 3, face);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const double mobility = sim->mobility_f->v[f];
+    const double m = mobility > 0 ? 1 / mobility : NO_MASS;
+    face[0][f] = m, face[1][f] = m * a[f], face[2][f] = m * thrusts[f];
+  }
+  mesh_fill_faces(mesh, 5,
+                  (double *const[]){a, thrusts, face[0], face[1], face[2]});
+  for (int32_t f = mesh->begin_face_average; f < mesh->nfaces_all; f++) {
+    a[f] = face[1][f] / face[0][f];
+    thrusts[f] = face[2][f] / face[0][f];
+  }
+  scratch_give(&sim->scratch, __func__);
 }
 
 void four_state_face_acceleration(struct four_state *sim, const double *p,
@@ -175,7 +230,7 @@ void four_state_face_acceleration(struct four_state *sim, const double *p,
       sim->thrust_f->v[f] = wall ? 0 : thrust(sim, d, f, gradient);
     }
   }
-  mesh_fill_faces(mesh, 2, (double *const[]){a_f, sim->thrust_f->v});
+  fill_by_mass(sim, a_f, sim->thrust_f->v);
 }
 
 void four_state_acceleration(const struct four_state *sim, const double *a_f,

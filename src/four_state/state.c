@@ -71,6 +71,18 @@ static struct field *add_output(struct four_state *sim, const char *name,
   return field;
 }
 
+/* Add the fields of an exact yield. */
+static void add_yield(struct four_state *sim) {
+  struct yield *yield = &sim->yield;
+  yield_add(yield, &sim->grid.fields, &sim->grid.mesh, true);
+  yield->scratch = &sim->scratch;
+  yield->skin = &sim->skin;
+  yield->eta = sim->eta_f;
+  yield->shear = sim->shear_f;
+  yield->state =
+      add_output(sim, "yield_state", "0: held, 1: at the yield stress");
+}
+
 static void add_made(struct four_state *sim) {
   static const char *const upper[] = {"upper_x", "upper_y", "upper_z"};
   sim->p = add(sim, "pressure", "Pa", "pressure", NULL, true);
@@ -87,6 +99,9 @@ static void add_made(struct four_state *sim) {
       add_output(sim, "pE_over_p", "part of the pressure by enduring contact");
   sim->name =
       add_output(sim, "state", "0 solid 1 quasi-static 2 dense 3 inertial");
+  sim->skin = skin_new();
+  sim->still = add(sim, "still", "1", "", NULL, false);
+  sim->touches = add(sim, "touches", "1", "", NULL, false);
   sim->mobility_f = add_face(sim, "mobility");
   sim->thrust_f = add_face(sim, "thrust");
   sim->eta_f = add_face(sim, "face_viscosity");
@@ -94,8 +109,11 @@ static void add_made(struct four_state *sim) {
   sim->shear_f = add_face(sim, "face_shear_rate");
   sim->u_f = add_face(sim, "face_velocity");
   sim->flux = add_face(sim, "face_flux");
-  scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, 2 * DIM + 4,
-               DIM + 4);
+  sim->exact = sim->keys->regularisation == FOUR_STATE_EXACT;
+  if (sim->exact) add_yield(sim);
+  scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh,
+               sim->exact ? 3 * DIM + 3 : 2 * DIM + 4,
+               DIM + 4 + (sim->exact ? STRAIN_ROWS : 0));
 }
 
 static void refuse(const double *param, const char *wrong) {
@@ -125,6 +143,7 @@ struct four_state *four_state_new_on(const struct params *params,
 
 void four_state_destroy(struct four_state *sim) {
   if (!sim) return;
+  skin_destroy(sim->skin);
   grid_release(&sim->grid);
   four_state_closure_release(&sim->closure);
   mem_free(sim);

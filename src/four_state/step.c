@@ -10,13 +10,15 @@
  *
  * four_state_time_step   dt, by the flow
  * four_state_properties  p, p_E, mu_K, lambda_K of nu^n and T^n; masses
- * predict                twice, with gamma of u^n and then of u*
+ * four_state_predict     twice, with gamma of u^n and then of u*; or with an
+ *                        exact yield as yield.h says
  *     a_f = g - grad p/(rho_d M)
  *     rho_d nu u* - dt div[2 mu D(u*) + (lambda_K - 2/3 mu_K) div u* I]
  *         = rho_d nu (u^n + dt A(a_f))
  *     mu = mu_K + p_E eta_S (1 - exp(-n gamma/2))/gamma
  *     u* <- u* - dt A(a_f)
- * press                  granular_pressure.h
+ * press                  granular_pressure.h, F(u*) of still grains less what
+ *                        leaks between leaves and faces (velocities.h)
  *     u_f = F(u*) + dt a_f - 1/2 minmod(F(u*) + dt a_f - F(u^n), dt g)
  *           - dt/(rho_d M) grad(p^{n+1} - p)
  *     nu^{n+1} = nu^n - dt div(nu_f u_f),  p^{n+1} = P(nu^{n+1}, T^n)
@@ -24,7 +26,7 @@
  * carry                  u and T with the same fluxes
  *     nu^{n+1} q = nu^n q - dt div(nu_f u_f q_f)
  * four_state_heat        conduction, delta grad nu, production, collisions
- * calm_vacuum            leaves without grains take the velocity of those that
+ * four_state_calm        leaves without grains take the velocity of those that
  *                        have some around them
  * four_state_adapt       if grains have moved far enough
  * Energy that forces take is booked as they act (work.h).
@@ -44,14 +46,14 @@
 #include "talus/four_state/state.h"
 #include "talus/four_state/temperature.h"
 #include "talus/four_state/time_step.h"
+#include "talus/four_state/velocities.h"
 #include "talus/four_state/work.h"
 #include "talus/log.h"
 #include "talus/minmax.h"
-#include "talus/viscous.h"
 
 /* A failed step is repeated at most RETRIES times, each time with dt reduced by
  * RETRY_FACTOR. */
-enum { RETRIES = 20, PICARD = 2, MOST_NEWTON = 30 };
+enum { RETRIES = 20, MOST_NEWTON = 30 };
 #define RETRY_FACTOR 0.5
 
 /* A leaf may give away this part of its grains in a step. */
@@ -67,15 +69,12 @@ enum { RETRIES = 20, PICARD = 2, MOST_NEWTON = 30 };
 #define AHEAD 0.1
 /* Slope of P over K where there is no pressure. */
 #define LEAST_SLOPE 1e-12
-/* Solid fractions below this count as this in the viscous equation. */
+/* Leaves with less have no velocity and no T of their own. */
 #define LEAST_NU 1e-6
 /* A stalled viscous solve passes within STALL_SLACK times its tolerance, or
  * below STALL_FLOOR of the speed that the tolerance refers to. */
 #define STALL_SLACK 10
 #define STALL_FLOOR 1e-10
-/* The first pass only serves the shear rate of the second, and is solved to
- * this times the tolerance. */
-#define FIRST_PASS 10
 
 static double find_pressure(const void *context, int32_t i, double nu,
                             double *slope) {
@@ -109,106 +108,6 @@ struct granular_pressure four_state_material(struct four_state *sim,
   return by;
 }
 
-/* Find the largest speed of the grains, the walls and free fall over dt. */
-static double speed_scale(const struct four_state *sim, double dt) {
-  double most = 1e-300;
-  for (int d = 0; d < DIM; d++) {
-    most = max2(most, dt * fabs(sim->params->gravity[d]));
-    for (int k = 0; k < MESH_MAX_PATCHES; k++) {
-      most = max2(most, fabs(sim->u[d]->bc[k].value));
-    }
-    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-      if (four_state_has_grains(sim, i))
-        most = max2(most, fabs(sim->u[d]->v[i]));
-    }
-  }
-  return mesh_max(sim->grid.mesh, most);
-}
-
-/* Solve the viscous equation of mass [nleaves] and rhs to `slack` times the
- * tolerance; u: guess, solution. Iterations are added up. */
-static void diffuse(struct four_state *sim, double dt, const double *mass,
-                    double *const rhs[DIM], double slack,
-                    double *const u[DIM]) {
-  const struct bc *bc[DIM];
-  const struct viscosity viscosity = {.eta_f = sim->eta_f->v,
-                                      .kappa_f = sim->kappa_f->v};
-  for (int e = 0; e < DIM; e++) bc[e] = sim->u[e]->bc;
-  const int before = sim->viscous.iterations;
-  sim->viscous = viscous_solve(
-      sim->grid.mesh, sim->grid.hierarchy, mass, &viscosity, dt, rhs, bc,
-      slack * sim->params->tolerance_viscous * sim->scale,
-      sim->params->max_iterations, u);
-  sim->viscous.iterations += before;
-}
-
-/* Give leaves without grains the velocity of the grains around them, for
- * differences across the surface, and fill u. nu is filled. */
-static void calm_vacuum(struct four_state *sim) {
-  const struct mesh *mesh = sim->grid.mesh;
-  const double *nu = sim->nu->v;
-  for (int e = 0; e < DIM; e++) {
-    double *u = sim->u[e]->v;
-    field_fill(mesh, sim->u[e]);
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      double mass = 0, sum = 0;
-      if (four_state_has_grains(sim, i)) continue;
-      for (int s = 0; s < NSTENCIL; s++) {
-        const int32_t node = mesh->stencil[i][s];
-        if (nu[node] < sim->keys->nu_vacuum) continue;
-        mass += nu[node];
-        sum += nu[node] * u[node];
-      }
-      u[i] = mass > 0 ? sum / mass : 0;
-    }
-    mesh_touch(mesh, u);
-    field_fill(mesh, sim->u[e]);
-  }
-}
-
-/* Find u*, a_f and start_f, which is F(u^n). */
-static void predict(struct four_state *sim, double dt, double *a_f,
-                    double *start_f) {
-  const struct mesh *mesh = sim->grid.mesh;
-  const double rho = sim->closure.param[LEE_HUANG_RHO_D];
-  double *u[DIM], *cell[2 * DIM + 1];
-  field_arrays(sim->u, u);
-  scratch_take(&sim->scratch, FIELD_CELL, __func__, 2 * DIM + 1, cell);
-  double **a = cell, **rhs = cell + DIM, *mass = cell[2 * DIM];
-  four_state_face_acceleration(sim, sim->p->v, a_f);
-  four_state_acceleration(sim, a_f, a);
-  field_fill_many(mesh, DIM, sim->u);
-  four_state_face_velocity(sim, u, start_f);
-  four_state_viscosity(sim, u);
-  sim->impact +=
-      0.5 * dt * four_state_fall(sim, u) - four_state_work(sim, dt, NULL, a, u);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    mass[i] = rho * max2(sim->nu->v[i], LEAST_NU);
-    for (int e = 0; e < DIM; e++) {
-      u[e][i] += dt * a[e][i];
-      rhs[e][i] = mass[i] * u[e][i];
-    }
-  }
-  sim->scale = speed_scale(sim, dt);
-  sim->viscous = (struct solve_stats){0};
-  for (int k = 0; k < PICARD; k++) {
-    if (k > 0) four_state_viscosity(sim, u);
-    diffuse(sim, dt, mass, rhs, k < PICARD - 1 ? FIRST_PASS : 1, u);
-    if (k == PICARD - 1) four_state_book_friction(sim, mass, rhs, u);
-    calm_vacuum(sim);
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      if (four_state_has_grains(sim, i)) continue;
-      for (int e = 0; e < DIM; e++) rhs[e][i] = mass[i] * u[e][i];
-    }
-  }
-  four_state_shear(sim, u);
-  for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] -= dt * a[e][i];
-    mesh_touch(mesh, u[e]);
-  }
-  scratch_give(&sim->scratch, __func__);
-}
-
 /* Find p, u_f and the flux of the end of the step, u without advection, and
  * nu_new [nleaves]. */
 static void press(struct four_state *sim, double dt, double *a_f,
@@ -219,6 +118,7 @@ static void press(struct four_state *sim, double dt, double *a_f,
   double *p = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   field_fill_many(mesh, DIM, sim->u);
   four_state_face_velocity(sim, u, u_f);
+  four_state_hold(sim, dt, a_f, u_f);
   four_state_accelerate_faces(sim, dt, a_f, start_f, u_f);
   const struct granular_pressure by = four_state_material(sim, "pressure");
   sim->pressure =
@@ -313,7 +213,7 @@ static double advance_state(struct four_state *sim, double dt) {
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   double *nu_new = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   four_state_properties(sim), lap(sim, FOUR_STATE_CLOSURES);
-  predict(sim, dt, face[0], face[1]), lap(sim, FOUR_STATE_VISCOUS);
+  four_state_predict(sim, dt, face[0], face[1]), lap(sim, FOUR_STATE_VISCOUS);
   press(sim, dt, face[0], face[1], nu_new);
   lap(sim, FOUR_STATE_PRESSURE);
   const double given = four_state_given(sim, dt, sim->nu->v);
@@ -321,7 +221,7 @@ static double advance_state(struct four_state *sim, double dt) {
   scratch_give(&sim->scratch, __func__);
   four_state_heat(sim, dt), lap(sim, FOUR_STATE_TEMPERATURE);
   field_fill(sim->grid.mesh, sim->nu);
-  calm_vacuum(sim), lap(sim, FOUR_STATE_OTHER);
+  four_state_calm(sim), lap(sim, FOUR_STATE_OTHER);
   return given;
 }
 

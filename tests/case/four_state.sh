@@ -40,6 +40,21 @@ paste -d, <(tail -n 1 whole/series.csv | cut -d, -f5) \
   awk -F, '{ d = $1 - $2; exit !(d < 1e-6 && d > -1e-6) }' ||
   complain "three ranks have another front"
 
+# the stress of an exact yield is kept: restart, ranks, yield_state in snapshots
+ends 0 "$talus" run $column regularisation=exact stop=0.6 -o exact --quiet
+ends 5 "$talus" run $column regularisation=exact stop=0.6 -o exact_parts \
+  --quiet --max-steps 17
+ends 0 "$talus" run $column regularisation=exact stop=0.6 -o exact_parts \
+  --quiet --restart
+diff <(numbers exact) <(numbers exact_parts) > output ||
+  complain "a restart changes series.csv with an exact yield"
+ends 0 mpirun --oversubscribe -n 3 "$build/talus2d" run $column \
+  regularisation=exact stop=0.6 -o exact_ranks --quiet
+grep -aq yield_state exact/snapshot-000001.h5 ||
+  complain "snapshots do not carry yield_state"
+ends 2 "$talus" check $column regularisation=exat
+says '"exponential" or "exact"'
+
 # rings: restart, ranks, and a quarter of the cylinder in three dimensions
 cylinder="$root/examples/four_state_cylinder.lua cells=8 stop=2"
 ends 0 "$talus" run $cylinder -o rings --quiet
@@ -58,6 +73,7 @@ close() {
     awk -F, -v most="$4" '{ d = $1 / $2 - 1; exit !(d < most && -d < most) }' ||
     complain "$1 and $2 differ in column $3"
 }
+close exact exact_ranks 5 1e-5
 close rings rings_ranks 5 1e-4
 close rings quarter 5 0.04
 close rings quarter 6 0.04

@@ -32,11 +32,10 @@ static struct params with_levels(struct params p, int which) {
   return p;
 }
 
-/* In balance nothing moves: the bar is 1e-10 sqrt(g H). Surfaces on faces and
- * between them. Where levels jump along the layer, p of virtual children lies
- * on a line and that of the layer does not quite: 1e-5 of p, until friction and
- * packing hold the difference (1e-10 after 0.27 s, 2e-11 after 1 s: make
- * convergence CASE=four_state). From 6 on in rings. */
+/* In balance nothing moves: the bar is 1e-10 sqrt(g H) in each step. Surfaces
+ * on faces and between them. Where levels jump along the layer p of virtual
+ * children lies on a line and that of the layer does not quite: 2e-11, and
+ * 7e-10 in 3D on leaves of twice the size. From 6 on in rings. */
 START_TEST(a_layer_in_balance_rests) {
   static const double top[] = {0.1, 0.1017};
   double z[] = {-1, top[_i % 2]};
@@ -47,11 +46,48 @@ START_TEST(a_layer_in_balance_rests) {
   p.tolerance_pressure = 1e-8, p.tolerance_viscous = 1e-12;
   p.shape = (struct function){slab, z};
   struct four_state *sim = beads_new(&p);
-  const bool done = beads_run(sim, 1, 70);
-  const double speed = beads_speed(sim);
+  bool done = true;
+  double speed = 0;
+  for (int k = 0; k < 70 && done; k++) {
+    done = beads_run(sim, 1, 1);
+    speed = fmax(speed, beads_speed(sim));
+  }
   four_state_destroy(sim);
   ck_assert(done);
-  ck_assert_double_le(speed, (jump == 1 ? 2e-9 : 1e-10) * sqrt(9.81 * 0.1));
+  ck_assert_double_le(
+      speed, (DIM == 3 && jump == 1 ? 1e-9 : 1e-10) * sqrt(9.81 * 0.1));
+}
+END_TEST
+
+/* Return how far a point lies below a slope of 0.86 of eta_S. */
+static double slope(void *context, const double x[3]) {
+  (void)context;
+  return 0.05 - 0.36 * x[0] - x[DIM - 1];
+}
+
+/* A heap on an adapted grid stands, for a tenth of a second (3D: 0.04 s),
+ * leaves of the surface that are not full included: the fastest grains have
+ * 0.035 mm/s, in rings (from 2 on) 0.07 and in 3D 0.05 mm/s; with an exact
+ * yield (odd) 0.13, 0.36 and 0.28 mm/s. With tangential differences that read
+ * grains which do not touch it is more than 5 mm/s. */
+START_TEST(a_heap_rests) {
+  struct four_state_keys keys = four_state_defaults();
+  struct four_state_measures m;
+  if (_i % 2) keys.regularisation = FOUR_STATE_EXACT;
+  struct params p = beads_params(&keys, LEVEL);
+  if (_i >= 2) p.coordinates = COORDINATES_AXISYMMETRIC;
+  p.level_min = LEVEL - 2;
+  p.criterion[p.ncriteria++] = (struct criterion){
+      .type = CRITERION_INTERFACE, .level = LEVEL, .width = 2};
+  p.shape = (struct function){slope, NULL};
+  p.tolerance_pressure = p.tolerance_viscous = 1e-5;
+  struct four_state *sim = beads_new(&p);
+  const bool done = beads_run(sim, DIM == 2 ? 0.1 : 0.04, 1000);
+  four_state_measure(sim, &m);
+  outline_free(&m.outline);
+  four_state_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_le(m.max_speed, _i % 2 ? 5e-4 : 1e-4);
 }
 END_TEST
 
@@ -87,10 +123,10 @@ END_TEST
 /* A layer falls freely: momentum g t to 1e-4, mass to round-off, and lands
  * without passing nu_0 and without a gain of energy. The works of friction,
  * collisions and pressure, each of its own force, account for its energy at all
- * times but for what the scheme loses as it carries momentum, 0.7 %, or
- * 1.2 % across level jumps (3D, on leaves of twice the size: 1.8 %); the bar is
- * 1 %. As the uniform layer lands Newton takes 12 iterations at most, and 19
- * (2D) with P' of nu alone (granular_pressure.h). */
+ * times but for what the scheme loses as it carries momentum, 0.8 % (3D, on
+ * leaves of twice the size: 1.8 %); the bar is 1 %. As the uniform layer lands
+ * Newton takes 12 iterations at most, and 19 (2D) with P' of nu alone
+ * (granular_pressure.h). */
 START_TEST(a_layer_falls_and_lands) {
   double z[] = {0.04, 0.1};
   struct four_state_keys keys = four_state_defaults();
@@ -126,7 +162,7 @@ START_TEST(a_layer_falls_and_lands) {
   ck_assert_double_eq_tol(m.volume / before.volume, 1, 1e-12);
   ck_assert_double_lt(most, 0.6);
   ck_assert_double_le(gain, 1e-3);
-  ck_assert_double_le(open, DIM == 3 ? 0.02 : _i == 0 ? 0.01 : 0.015);
+  ck_assert_double_le(open, DIM == 3 ? 0.02 : 0.01);
   if (_i == 0) ck_assert_int_le(newton, 13);
   /* across level jumps 0.2 % of the grains still hop above the others */
   if (_i == 0) ck_assert_double_le(m.grain_speed, 0.01);
@@ -302,6 +338,7 @@ Suite *four_state_suite(void) {
   Suite *suite = suite_create("four_state");
   TCase *rest = tcase_create("rest"), *flow = tcase_create("flow");
   tcase_add_loop_test(rest, a_layer_in_balance_rests, 0, DIM == 2 ? 12 : 6);
+  tcase_add_loop_test(rest, a_heap_rests, 0, DIM == 2 ? 4 : 2);
   tcase_add_test(rest, pressure_at_rest_is_the_weight);
   /* in 3D leaves are so coarse that some grains reach the floor at once */
   tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, DIM == 2 ? 3 : 1);

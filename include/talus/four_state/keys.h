@@ -8,6 +8,10 @@
 #include "talus/lee_huang.h"
 
 enum four_state_start { FOUR_STATE_BALANCE, FOUR_STATE_UNIFORM };
+enum four_state_regularisation {
+  FOUR_STATE_EXPONENTIAL,
+  FOUR_STATE_EXACT /* yield.h */
+};
 
 struct four_state_keys {
   double param[LEE_HUANG_NKEYS]; /* in the order of lee_huang.h */
@@ -17,6 +21,7 @@ struct four_state_keys {
   double nu_surface;             /* the contour that is the surface */
   double nu_start;               /* at t = 0, if uniform */
   enum four_state_start start;
+  enum four_state_regularisation regularisation;
 };
 
 extern const struct model_keys four_state_model_keys;

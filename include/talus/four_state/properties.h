@@ -13,19 +13,25 @@
  *   a   = (1 - s) a_lower + s a_upper,   a_f = g - grad p/(rho_d M)
  * go from leaves to faces and back. Walls do not accelerate: a_f = 0. A face at
  * the surface may have more mass than its leaves lend; they share the rest of
- * the force of its pressure by their mass, so that none is lost.
+ * the force of its pressure by their mass, so that none is lost. The side of a
+ * coarse leaf has the mean by mass of its finer faces.
+ *
+ * Skin. Leaves touch by min(1, p/(h/2 rho_d nu |g|)); tangential differences
+ * hardly read those that do not (skin.h): grains that slide on a heap would
+ * shear it with them, and so would the vacuum.
  */
 #ifndef TALUS_FOUR_STATE_PROPERTIES_H
 #define TALUS_FOUR_STATE_PROPERTIES_H
 
 struct four_state;
 
-/* Fill nu and set p, p_E, mu_K, lambda_K (filled) and the masses. Collective.
- */
+/* Fill nu and set p, p_E, mu_K, lambda_K (filled), the masses and the skin.
+ * Collective. */
 void four_state_properties(struct four_state *sim);
 /* Set eta_f, kappa_f and shear_f of a velocity u, filled: friction
  * p_E eta_S (1 - exp(-n gamma/2))/gamma and mu_K, p_E on no-slip walls with the
- * weight of the grains that lie on them. Collective. */
+ * weight of the grains that lie on them. With an exact yield eta_f is mu_K and
+ * yield.tau_y is p_E eta_S. Collective. */
 void four_state_viscosity(struct four_state *sim, double *const u[]);
 /* Set shear_f, on all faces. u filled. Collective. */
 void four_state_shear(struct four_state *sim, double *const u[]);

@@ -13,6 +13,7 @@
 #include "talus/params.h"
 #include "talus/scratch.h"
 #include "talus/solve.h"
+#include "talus/yield.h"
 
 /* Stages of a step (step.c). */
 enum four_state_stage {
@@ -52,6 +53,11 @@ struct four_state {
   struct field *u_f, *flux;      /* face velocity, and nu_f times it, m/s */
   struct field *c;               /* what adaptation follows: nu over that of
                                     grains that touch, at most 1 */
+  bool exact;                    /* the grains yield exactly, else by n */
+  struct yield yield;
+  struct skin *skin;     /* of leaves in which grains touch */
+  struct field *touches; /* how well they do, 1 within a bed */
+  struct field *still;   /* 1 in leaves at rest, 0 in those that move */
   struct scratch scratch;
 
   /* For output, on demand */
