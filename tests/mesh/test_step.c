@@ -779,6 +779,7 @@ START_TEST(repetitions_close_in_on_a_velocity) {
   bool done = true;
   params.grains.rheology = mu_i(10);
   params.shape = (struct function){column, NULL};
+  if (DIM == 3) params_make_narrow(&params, 2);
   for (int k = 0; k < 3; k++) {
     params.picard = 1 << k;
     struct two_phase *sim = sim_start(&params);
@@ -802,8 +803,9 @@ END_TEST
 /* With a viscosity that does not change, a repetition mends what the viscous
  * solve has not seen of the new pressure gradient. In the grains of a moving
  * column that is what the interface has changed of their density: by how much
- * of their mean speed it moves them, in the mean of the squares: 1.2e-3 (2D),
- * 2.3e-3 (3D), and 1.9e-3 and 4.5e-3 where g has that of the last step. */
+ * of their mean speed it moves them, in the mean of the squares: 8e-4 (2D),
+ * 2.5e-3 (3D, narrow), and 1.4e-3 and 3.5e-3 where g has that of the last step.
+ */
 START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
   struct params params = box_params(DIM == 2 ? 6 : 5);
   double *u[2][DIM], sum[2] = {0};
@@ -811,6 +813,7 @@ START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
   params.cfl = 0.7;
   params.grains.rheology = newtonian(0.1);
   params.shape = (struct function){column, NULL};
+  if (DIM == 3) params_make_narrow(&params, 3);
   struct two_phase *sim[2];
   for (int k = 0; k < 2; k++) {
     params.picard = 0;
@@ -831,7 +834,7 @@ START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
   const double part = sqrt(mesh_sum(mesh, sum[0]) / mesh_sum(mesh, sum[1]));
   for (int k = 0; k < 2; k++) two_phase_destroy(sim[k]);
   ck_assert(done);
-  ck_assert_double_le(part, DIM == 2 ? 1.6e-3 : 3.2e-3);
+  ck_assert_double_le(part, DIM == 2 ? 1.1e-3 : 3.0e-3);
 }
 END_TEST
 

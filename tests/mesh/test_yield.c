@@ -123,6 +123,7 @@ static struct params heap_params(bool jumps) {
   p.boundary[2 * UP + 1].type = BOUNDARY_OUTFLOW;
   p.tolerance_pressure = p.tolerance_viscous = 1e-12;
   p.dt_max = 1. / 32;
+  if (DIM == 3) params_make_narrow(&p, 2);
   if (jumps) params_follow_surface(&p, p.level_max - 2, 3);
   return p;
 }
