@@ -159,9 +159,10 @@ static double law(const struct two_fluid *sim, int32_t i, double alpha,
 double two_fluid_law(const struct two_fluid *sim, int32_t i, double alpha,
                      double dt, double *slope) {
   const double p = law(sim, i, alpha, dt, slope), s = sim->rest->v[i];
-  if (p >= s * alpha) return p;
+  const double at_rest = s * alpha + sim->burden->v[i];
+  if (p >= at_rest) return p;
   if (slope != NULL) *slope = s;
-  return s * alpha;
+  return at_rest;
 }
 
 /* Return what shear by 1 would add to the pressure of leaf i, Pa: dense grains
@@ -241,40 +242,6 @@ static void fill_pressure(struct two_fluid *sim) {
   mesh_fill_potential(mesh, sim->weight->v, 1, &sim->p_s->v, &bc, false);
 }
 
-/* Return how well leaf i leans on the node across side s: 1 where one of them
- * carries at least half the weight of its grains in a leaf. */
-static double contact(const struct two_fluid *sim, int32_t i, int s,
-                      double weight) {
-  const struct mesh *mesh = sim->grid.mesh;
-  const int32_t there = mesh->stencil[i][stencil_face(s)];
-  const double alpha = max2(sim->alpha->v[i], sim->alpha->v[there]);
-  const double p = max2(sim->p_s->v[i], sim->p_s->v[there]);
-  const double half = 0.5 * weight * mesh->h[i] * alpha;
-  return two_fluid_wetted(sim, i, s) * (p < half ? max2(p, 0) / half : 1);
-}
-
-static void set_upper(struct two_fluid *sim) {
-  const struct mesh *mesh = sim->grid.mesh;
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++)
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  const double weight = sqrt(g2) * (two_fluid_density(sim, TWO_FLUID_S) -
-                                    two_fluid_density(sim, TWO_FLUID_F));
-  for (int d = 0; d < DIM; d++) {
-    double *upper = sim->upper[d]->v;
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      upper[i] = 0.5;
-      if (!two_fluid_has_grains(sim, i)) continue;
-      upper[i] += 0.5 * (contact(sim, i, 2 * d + 1, weight) -
-                         contact(sim, i, 2 * d, weight));
-    }
-    mesh_touch(mesh, upper);
-    field_fill(mesh, sim->upper[d]);
-    for (int32_t i = mesh->begin_boundary; i < mesh->ncells; i++)
-      upper[i] = 1 - upper[i];
-  }
-}
-
 /* Find the faces beside leaves in which grains do not touch: what moves there
  * is not continued by the grains of a bed. */
 static void find_skin(struct two_fluid *sim) {
@@ -312,7 +279,7 @@ void two_fluid_properties(struct two_fluid *sim) {
   set_face_drag(sim);
   fill_pressure(sim);
   if (sim->exact) find_skin(sim);
-  set_upper(sim);
+  two_fluid_find_contact(sim);
 }
 
 /* Return the pressure of the grains on a wall: that of the leaf, and the weight

@@ -115,6 +115,7 @@ static void add_state(struct two_fluid *sim) {
 static void add_leaves(struct two_fluid *sim) {
   static const char *const mean[] = {"velocity_x", "velocity_y", "velocity_z"};
   static const char *const upper[] = {"upper_x", "upper_y", "upper_z"};
+  static const char *const gain[] = {"gain_x", "gain_y", "gain_z"};
   static const char *const normal[] = {"normal_x", "normal_y", "normal_z"};
   const bool kinetic = sim->closure.set == TWO_FLUID_KTGF;
   sim->alpha_new = add(sim, "next_solid_fraction", "1", "", NULL, false);
@@ -134,11 +135,13 @@ static void add_leaves(struct two_fluid *sim) {
                "solid fraction over that of the start, at most 1", NULL, true);
   sim->phi = add(sim, "bed_fraction", "1", "", NULL, false);
   sim->rest = add(sim, "resting", "Pa", "", NULL, false);
+  sim->burden = add(sim, "burden", "Pa", "", NULL, false);
   sim->lack = add(sim, "lack", "Pa", "", NULL, false);
   sim->carried = add(sim, "carried", "1", "", NULL, false);
   sim->plane = add(sim, "plane", "1", "", NULL, false);
   for (int d = 0; d < DIM; d++) {
     sim->normal[d] = add(sim, normal[d], "1", "", NULL, false);
+    sim->gain[d] = add(sim, gain[d], "m/s", "", NULL, false);
     sim->upper[d] = add(sim, upper[d], "1", "", NULL, false);
     sim->mean[d] = add(sim, mean[d], "m/s",
                        "flux of the grains over their fraction", NULL, true);
@@ -185,7 +188,7 @@ static void add_faces(struct two_fluid *sim) {
   if (sim->exact) add_yield(sim);
   const int more = sim->exact ? STRAIN_ROWS : 0;
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh,
-               3 * DIM + 1 + sim->exact, 4 + more);
+               3 * DIM + 1 + sim->exact, DIM + 2 + more);
 }
 
 /* Refuse bounds of what an exact yield does not bound. */

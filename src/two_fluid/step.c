@@ -10,6 +10,8 @@
  * two_fluid_time_step    dt, by what carries
  * two_fluid_properties   planes of the surface, K, Theta, p_s = P(alpha^n)
  *     with gamma of u^n
+ * two_fluid_foresee      transport.h
+ *     u_f <- u_f - dt div(F u_f)/a,  F = j - alpha u_s of the last step
  * two_fluid_velocities   velocities.h
  *     b = A(forces of p, p_s and weight)
  *     (m_s + theta m_f) u_s - dt div(tau_s + theta tau_f) = ...
@@ -24,7 +26,8 @@
  *     alpha^{n+1} = alpha^n - dt div(alpha u_s_f),  p_s^{n+1} = P(alpha^{n+1})
  *     div(lambda grad p) = div j / dt,  j = alpha u_s_f + a u_f_f
  *     u <- u + A(u_f - w)
- * two_fluid_transport    u, phi_p, X and tracers with the same fluxes
+ * two_fluid_transport    u_f without what was foreseen
+ *     u, phi_p, X and tracers with the same fluxes
  *     alpha^{n+1} q = alpha^n q - dt div(alpha u_s_f q_f)
  * shear_grains
  *     phi_p <- phi_p exp(- delta gamma dt),   X towards its value at gamma
@@ -114,6 +117,7 @@ static void level_pressure(struct two_fluid *sim) {
 static double advance_state(struct two_fluid *sim, double dt) {
   sim->dt = dt;
   two_fluid_properties(sim), two_fluid_lap(sim, TWO_FLUID_CLOSURES);
+  two_fluid_foresee(sim, dt);
   two_fluid_velocities(sim, dt), two_fluid_lap(sim, TWO_FLUID_VISCOUS);
   two_fluid_pressures(sim, dt), two_fluid_lap(sim, TWO_FLUID_PROJECTION);
   const double given = two_fluid_given(sim, dt);

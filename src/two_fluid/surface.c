@@ -11,6 +11,8 @@
 
 /* A bed is at least so many grains thick. */
 static const double THINNEST = 0.5;
+/* A bed that fills this part of a leaf carries what lies in the one above. */
+static const double FULL = 0.5;
 /* The part of a face that is wetted is that of a volume so many edges deep. */
 static const double SHALLOW = 1e-6;
 
@@ -42,43 +44,84 @@ static void find_carried(const struct two_fluid *sim, int axis, double *load) {
   mesh_touch(mesh, load);
 }
 
-/* Does leaf i rest on what is across side `below`, with less above? */
+/* Has leaf i grains, and more than that on the side away from `below`? */
+static bool is_highest(const struct two_fluid *sim, int32_t i, int below) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const int32_t above = mesh->stencil[i][stencil_face(below ^ 1)];
+  return two_fluid_has_grains(sim, i) &&
+         (sim->alpha->v[above] < sim->alpha->v[i] ||
+          two_fluid_is_side(sim, mesh->cell_face[i][below ^ 1]));
+}
+
+/* Does leaf i rest on a full one across side `below`, with less above? */
 static bool rests(const struct two_fluid *sim, int32_t i, int below,
                   const double *load) {
   const struct mesh *mesh = sim->grid.mesh;
   const int32_t there = mesh->stencil[i][stencil_face(below)];
-  const int32_t above = mesh->stencil[i][stencil_face(below ^ 1)];
   const bool wall = two_fluid_is_side(sim, mesh->cell_face[i][below]);
   const double thickness = sim->alpha->v[i] * mesh->h[i] /
                            two_fluid_loosest(&sim->closure, sim->phi_p->v[i]);
   if (thickness < THINNEST * sim->closure.param[TWO_FLUID_GRAINS_D])
     return false;
-  if (sim->alpha->v[above] >= sim->alpha->v[i] &&
-      !two_fluid_is_side(sim, mesh->cell_face[i][below ^ 1]))
-    return false;
-  return wall || load[there] >= 0.5;
+  return is_highest(sim, i, below) && (wall || load[there] >= 0.5);
 }
 
-/* Set c, phi and s of a leaf. */
-static void set_leaf(struct two_fluid *sim, int32_t i, double s, bool resting) {
-  const double alpha = max2(sim->alpha->v[i], 0);
+/* Set c and phi of a leaf with s and W. */
+static void set_leaf(struct two_fluid *sim, int32_t i) {
+  const double alpha = max2(sim->alpha->v[i], 0), s = sim->rest->v[i];
   const double loose = two_fluid_loosest(&sim->closure, sim->phi_p->v[i]);
   double phi = alpha;
-  sim->rest->v[i] = resting ? s : 0;
   sim->c->v[i] = min2(alpha / (0.9 * loose), 1);
-  if (resting) {
-    phi = two_fluid_settled(&sim->closure, s * alpha, sim->phi_p->v[i]);
+  if (s > 0) {
+    phi = two_fluid_settled(&sim->closure, s * alpha + sim->burden->v[i],
+                            sim->phi_p->v[i]);
     phi = max2(phi, alpha);
     sim->c->v[i] = alpha / phi;
   }
   sim->phi->v[i] = phi;
 }
 
+/* Fill what tells neighbours of a leaf whether it rests, and how full it is. */
+static void fill_resting(struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  mesh_touch(mesh, sim->c->v);
+  mesh_touch(mesh, sim->rest->v);
+  field_fill(mesh, sim->c);
+  field_fill(mesh, sim->rest);
+}
+
+/* Let leaves rest on those below that rest and are not full: the surface cuts
+ * both. */
+static void rest_on_cut(struct two_fluid *sim, int axis, int below) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t there = mesh->stencil[i][stencil_face(below)];
+    if (two_fluid_is_side(sim, mesh->cell_face[i][below])) continue;
+    if (sim->rest->v[i] > 0 || !(sim->rest->v[there] > 0)) continue;
+    if (sim->c->v[there] >= FULL && is_highest(sim, i, below))
+      sim->rest->v[i] = weight_of(sim, axis, i);
+  }
+  fill_resting(sim);
+}
+
+/* Set W, and with it c and phi, of the leaves below these. */
+static void add_burden(struct two_fluid *sim, int axis, int below) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int32_t above = mesh->stencil[i][stencil_face(below ^ 1)];
+    const bool side = two_fluid_is_side(sim, mesh->cell_face[i][below ^ 1]);
+    if (sim->rest->v[i] > 0 && !side && sim->rest->v[above] > 0)
+      sim->burden->v[i] =
+          2 * weight_of(sim, axis, i) * max2(sim->alpha->v[above], 0);
+    set_leaf(sim, i);
+  }
+}
+
 /* No leaf has a surface. */
 static void set_none(struct two_fluid *sim) {
   for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
     sim->phi->v[i] = max2(sim->alpha->v[i], 0);
-    sim->rest->v[i] = 0;
+    sim->rest->v[i] = sim->burden->v[i] = 0;
   }
   mesh_touch(sim->grid.mesh, sim->phi->v);
   field_fill(sim->grid.mesh, sim->phi);
@@ -94,9 +137,16 @@ void two_fluid_find_surface(struct two_fluid *sim) {
   }
   find_carried(sim, axis, sim->carried->v);
   field_fill(mesh, sim->carried);
-  for (int32_t i = 0; i < mesh->nleaves; i++)
-    set_leaf(sim, i, weight_of(sim, axis, i),
-             rests(sim, i, 2 * axis + (g > 0 ? 1 : 0), sim->carried->v));
+  const int below = 2 * axis + (g > 0 ? 1 : 0);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const bool resting = rests(sim, i, below, sim->carried->v);
+    sim->rest->v[i] = resting ? weight_of(sim, axis, i) : 0;
+    sim->burden->v[i] = 0;
+    set_leaf(sim, i);
+  }
+  fill_resting(sim);
+  rest_on_cut(sim, axis, below);
+  add_burden(sim, axis, below);
   mesh_touch(mesh, sim->c->v);
   mesh_touch(mesh, sim->phi->v);
   field_fill(mesh, sim->c);
@@ -149,4 +199,53 @@ double two_fluid_passing(const void *context, int d, int32_t f, double dt,
       max2(mesh_swept(mesh, f, d, upwind, fabs(u_f) * dt), SHALLOW);
   return sim->phi->v[leaf] *
          vof_swept(mesh, d, f, upwind, min2(deep, 1), normal, sim->plane->v);
+}
+
+/* Return how well leaf i leans on the node across side s: 1 where one of them
+ * carries at least half the weight of its grains in a leaf. */
+static double contact(const struct two_fluid *sim, int32_t i, int s,
+                      double weight) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const int32_t there = mesh->stencil[i][stencil_face(s)];
+  const double alpha = max2(sim->alpha->v[i], sim->alpha->v[there]);
+  const double p = max2(sim->p_s->v[i], sim->p_s->v[there]);
+  const double half = 0.5 * weight * mesh->h[i] * alpha;
+  return p < half ? max2(p, 0) / half : 1;
+}
+
+/* Return the part of the grains of leaf i that counts for its upper face along
+ * axis d: a side that the bed hardly reaches counts less than the other one. Up
+ * and down p_s of a leaf that rests is that of its middle, whatever the plane.
+ */
+static double upper_part(const struct two_fluid *sim, int32_t i, int d,
+                         double weight) {
+  double wet[2], chi[2];
+  if (sim->rest->v[i] > 0 && d == outline_axis(sim->params->gravity))
+    return 0.5;
+  for (int k = 0; k < 2; k++) {
+    wet[k] = two_fluid_wetted(sim, i, 2 * d + k);
+    chi[k] = contact(sim, i, 2 * d + k, weight);
+  }
+  const double most = max2(wet[0], wet[1]);
+  if (!(most > 0)) return 0.5;
+  return 0.5 + 0.5 * (wet[1] * chi[1] - wet[0] * chi[0]) / most;
+}
+
+void two_fluid_find_contact(struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++)
+    g2 += sim->params->gravity[d] * sim->params->gravity[d];
+  const double weight = sqrt(g2) * (two_fluid_density(sim, TWO_FLUID_S) -
+                                    two_fluid_density(sim, TWO_FLUID_F));
+  for (int d = 0; d < DIM; d++) {
+    double *upper = sim->upper[d]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      upper[i] =
+          two_fluid_has_grains(sim, i) ? upper_part(sim, i, d, weight) : 0.5;
+    mesh_touch(mesh, upper);
+    field_fill(mesh, sim->upper[d]);
+    for (int32_t i = mesh->begin_boundary; i < mesh->ncells; i++)
+      upper[i] = 1 - upper[i];
+  }
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "talus/advection.h"
 #include "talus/minmax.h"
 #include "talus/two_fluid/state.h"
 #include "talus/two_fluid_grains.h"
@@ -39,45 +40,26 @@ static bool is_inside(const struct two_fluid *sim, int32_t i) {
   return least >= two_fluid_loosest(&sim->closure, sim->phi_p->v[i]);
 }
 
-/* Set keep [>= nleaves + nghosts] to how much of the slope of a phase counts in
- * what a leaf gives away: less of grains, the more a leaf gives, so that what
- * stays behind does not outrun its neighbours. */
-static void find_keep(const struct two_fluid *sim, int phase, double dt,
-                      double *keep) {
+/* Set keep [>= nleaves + nghosts] to how much of the slope of the grains counts
+ * in what a leaf gives away: less, the more a leaf gives, so that what stays
+ * behind does not outrun its neighbours. */
+static void find_keep(const struct two_fluid *sim, double dt, double *keep) {
   const struct mesh *mesh = sim->grid.mesh;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    keep[i] = 1;
-    if (phase == TWO_FLUID_F) continue;
+  for (int32_t i = 0; i < mesh->nleaves; i++)
     keep[i] = is_inside(sim, i)
                   ? max2(1 - 2 * two_fluid_part_given(sim, dt, i), 0)
                   : 0;
-  }
   mesh_fill_ghosts(mesh, 1, &keep);
 }
 
-/* Set the differences of q along d over leaves: central for the fluid, limited
- * for grains. */
-static void find_slopes(const struct two_fluid *sim, int phase, int d,
-                        const double *q, double *slope) {
-  const struct mesh *mesh = sim->grid.mesh;
-  const int lower = stencil_face(2 * d), upper = stencil_face(2 * d + 1);
-  if (phase == TWO_FLUID_S) {
-    granular_slopes(mesh, d, q, slope);
-    return;
-  }
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const int32_t *node = mesh->stencil[i];
-    slope[i] = 0.5 * (q[node[upper]] - q[node[lower]]);
-  }
-  mesh_fill_ghosts(mesh, 1, &slope);
-}
-
 /* Return q of what passes face f. */
-static double carried(const struct two_fluid *sim, int phase, int32_t f,
-                      double dt, double flux, const double *q,
-                      const double *slope, const double *keep) {
+static double carried(const struct two_fluid *sim, int32_t f, double dt,
+                      const double *q, const double *slope,
+                      const double *keep) {
   const struct mesh *mesh = sim->grid.mesh;
-  const double speed = sim->w_f[phase]->v[f] + sim->v_f[phase]->v[f];
+  const double flux = sim->flux->v[f];
+  const double speed =
+      sim->w_f[TWO_FLUID_S]->v[f] + sim->v_f[TWO_FLUID_S]->v[f];
   const double u_f = copysign(speed, flux);
   const int32_t *node = mesh->face_node[f];
   const int32_t leaf = mesh->face_leaf[f][flux > 0 ? 0 : 1];
@@ -87,32 +69,30 @@ static double carried(const struct two_fluid *sim, int phase, int32_t f,
   return q[leaf] + keep[leaf] * (value - q[leaf]);
 }
 
-/* Holds what all quantities of a phase share. */
+/* Holds what all quantities of the grains share. */
 struct carrier {
-  int phase;
   double dt;
-  double *flux, *keep; /* flux: of the phase, all faces */
-  double *slope, *carried;
+  double *keep, *slope, *carried;
 };
 
-/* Carry q with a phase; q is filled here. */
+/* Carry q with the grains; q is filled here. */
 static void carry(struct two_fluid *sim, const struct carrier *by,
                   struct field *q) {
   const struct mesh *mesh = sim->grid.mesh;
+  const double *flux = sim->flux->v;
   field_fill(mesh, q);
   for (int d = 0; d < DIM; d++) {
-    find_slopes(sim, by->phase, d, q->v, by->slope);
+    granular_slopes(mesh, d, q->v, by->slope);
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++)
       by->carried[f] =
-          by->flux[f] * carried(sim, by->phase, f, by->dt, by->flux[f], q->v,
-                                by->slope, by->keep);
+          flux[f] * carried(sim, f, by->dt, q->v, by->slope, by->keep);
   }
   mesh_fill_faces(mesh, 1, (double *const[]){by->carried});
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double part = two_fluid_part(by->phase, sim->alpha_new->v[i]);
+    const double part = sim->alpha_new->v[i];
     if (part < TWO_FLUID_NONE) continue;
     const double rest = mesh_divergence(mesh, by->carried, i) -
-                        q->v[i] * mesh_divergence(mesh, by->flux, i);
+                        q->v[i] * mesh_divergence(mesh, flux, i);
     q->v[i] -= by->dt * rest / part;
   }
   mesh_touch(mesh, q->v);
@@ -130,29 +110,101 @@ static void carry_tracers(struct two_fluid *sim, const struct carrier *by) {
   }
 }
 
-void two_fluid_transport(struct two_fluid *sim, double dt) {
-  const struct mesh *mesh = sim->grid.mesh;
-  double *cell[2], *face[2];
+/* Carry u_s, phi_p, X and tracers with the grains. */
+static void carry_grains(struct two_fluid *sim, double dt) {
+  double *cell[2], *face;
   scratch_take(&sim->scratch, FIELD_CELL, __func__, 2, cell);
-  scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
-  struct carrier by = {.dt = dt,
-                       .flux = face[0],
-                       .keep = cell[0],
-                       .slope = cell[1],
-                       .carried = face[1]};
-  for (by.phase = 0; by.phase < TWO_FLUID_NPHASES; by.phase++) {
-    for (int32_t f = 0; f < mesh->nfaces_all; f++) {
-      const double flux = sim->flux->v[f];
-      by.flux[f] = by.phase == TWO_FLUID_S ? flux : sim->j->v[f] - flux;
-    }
-    find_keep(sim, by.phase, dt, by.keep);
-    for (int e = 0; e < DIM; e++) carry(sim, &by, sim->u[by.phase][e]);
-    if (by.phase == TWO_FLUID_F) continue;
-    carry(sim, &by, sim->phi_p);
-    carry(sim, &by, sim->X);
-    carry_tracers(sim, &by);
+  face = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  const struct carrier by = {
+      .dt = dt, .keep = cell[0], .slope = cell[1], .carried = face};
+  find_keep(sim, dt, by.keep);
+  for (int e = 0; e < DIM; e++) carry(sim, &by, sim->u[TWO_FLUID_S][e]);
+  carry(sim, &by, sim->phi_p);
+  carry(sim, &by, sim->X);
+  carry_tracers(sim, &by);
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Add to `out` [DIM][nleaves] what u_f gains by what the fluid carries over dt,
+ * times its part; u_f and g are filled. */
+static void carry_fluid(struct two_fluid *sim, double dt, double *const g[DIM],
+                        double *const out[DIM]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  struct advection_work work = {.limiter = LIMITER_NONE};
+  double *cell[2 * DIM], *face[DIM + 2], *u[DIM];
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, 2 * DIM, cell);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, DIM + 2, face);
+  for (int e = 0; e < DIM; e++) {
+    work.slope[e] = cell[e], work.transverse[e] = cell[DIM + e];
+    work.flux[e] = face[e];
+  }
+  work.volume = face[DIM];
+  double *flux = face[DIM + 1];
+  for (int32_t f = 0; f < mesh->nfaces_all; f++)
+    flux[f] = sim->j->v[f] - sim->flux->v[f];
+  field_arrays(sim->u[TWO_FLUID_F], u);
+  advection_momentum(mesh, dt, u, g, flux, NULL, &work, out);
+  scratch_give(&sim->scratch, __func__);
+}
+
+/* Add `sign` times what was foreseen to u_f, filled here. */
+static void add_gain(struct two_fluid *sim, int sign) {
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int e = 0; e < DIM; e++) {
+    double *u = sim->u[TWO_FLUID_F][e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      u[i] += sign * sim->gain[e]->v[i];
+    mesh_touch(mesh, u);
+  }
+  field_fill_many(mesh, DIM, sim->u[TWO_FLUID_F]);
+}
+
+void two_fluid_foresee(struct two_fluid *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *none[DIM], *gain[DIM];
+  none[0] = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  memset(none[0], 0, (size_t)mesh->ncells * sizeof *none[0]);
+  field_arrays(sim->gain, gain);
+  for (int e = 0; e < DIM; e++) {
+    none[e] = none[0];
+    memset(gain[e], 0, (size_t)mesh->nleaves * sizeof *gain[e]);
+  }
+  carry_fluid(sim, dt, none, gain);
+  scratch_give(&sim->scratch, __func__);
+  for (int e = 0; e < DIM; e++)
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      gain[e][i] /= 1 - sim->alpha->v[i];
+  add_gain(sim, 1);
+}
+
+/* Carry u_f, with what it has half a step earlier. */
+static void carry_momentum(struct two_fluid *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *out[DIM], *g[DIM];
+  scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, out);
+  field_arrays(sim->gain, g);
+  add_gain(sim, -1);
+  for (int e = 0; e < DIM; e++) {
+    const struct field *u = sim->u[TWO_FLUID_F][e];
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      g[e][i] = (u->saved[i] - u->v[i]) / dt, out[e][i] = 0;
+    mesh_touch(mesh, g[e]);
+  }
+  field_fill_many(mesh, DIM, sim->gain);
+  carry_fluid(sim, dt, g, out);
+  for (int e = 0; e < DIM; e++) {
+    double *u = sim->u[TWO_FLUID_F][e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      u[i] += out[e][i] / (1 - sim->alpha_new->v[i]);
+    mesh_touch(mesh, u);
   }
   scratch_give(&sim->scratch, __func__);
+}
+
+void two_fluid_transport(struct two_fluid *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  carry_grains(sim, dt);
+  carry_momentum(sim, dt);
   memcpy(sim->alpha->v, sim->alpha_new->v,
          (size_t)mesh->nleaves * sizeof(double));
   mesh_touch(mesh, sim->alpha->v);

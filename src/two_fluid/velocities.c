@@ -235,9 +235,11 @@ static void keep_fluid(struct two_fluid *sim, double dt,
   scratch_give(&sim->scratch, __func__);
   for (int e = 0; e < DIM; e++) {
     const double *before = sim->u[TWO_FLUID_F][e]->saved;
+    const double *gain = sim->gain[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++)
-      u[TWO_FLUID_F][e][i] = before[i] + dt * (shared[e][i] + own[e][i]) /
-                                             mass_of(sim, TWO_FLUID_F, i);
+      u[TWO_FLUID_F][e][i] =
+          before[i] + gain[i] +
+          dt * (shared[e][i] + own[e][i]) / mass_of(sim, TWO_FLUID_F, i);
     mesh_touch(mesh, u[TWO_FLUID_F][e]);
   }
 }

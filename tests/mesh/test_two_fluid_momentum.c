@@ -97,6 +97,7 @@ START_TEST(transport_keeps_momentum) {
     sim->alpha_new->v[i] =
         sim->alpha->v[i] - dt * mesh_divergence(mesh, sim->flux->v, i);
   momenta(sim, before);
+  fields_save(&sim->grid.fields, sim->grid.mesh);
   two_fluid_transport(sim, dt);
   momenta(sim, after);
   double moved = 0;

@@ -159,6 +159,7 @@ START_TEST(a_linear_flow_carries_itself) {
     sim->alpha_new->v[i] = 0.3;
     divergence = fmax(divergence, fabs(mesh_divergence(mesh, sim->j->v, i)));
   }
+  fields_save(&sim->grid.fields, sim->grid.mesh);
   two_fluid_transport(sim, dt);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double *x = mesh->x[i];

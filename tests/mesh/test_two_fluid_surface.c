@@ -56,12 +56,12 @@ START_TEST(a_heap_stands) {
   if (_i == 0)
     ck_assert_double_le(after.max_speed, 0.01);
   else
-    ck_assert_double_ge(after.max_speed, 0.03);
+    ck_assert_double_ge(after.max_speed, 0.02);
 }
 END_TEST
 
-/* With an exact yield the same heap holds: pressure stays, and nothing but the
- * few grains that lie on leaves that are not full goes on. */
+/* With an exact yield the same heap holds, with its pressure, and so do the
+ * grains on leaves that are not full. */
 START_TEST(a_heap_that_yields_exactly_holds) {
   struct two_fluid_keys keys;
   const struct params p = heap_params(&keys, TWO_FLUID_PLANES, 36.9);
@@ -71,8 +71,8 @@ START_TEST(a_heap_that_yields_exactly_holds) {
   ck_assert(done);
   ck_assert_double_ge(after.max_solid_pressure,
                       0.99 * before.max_solid_pressure);
-  ck_assert_double_le(after.kinetic, 3e-4);
-  ck_assert_double_le(after.max_speed, 2e-3);
+  ck_assert_double_le(after.kinetic, 3e-6);
+  ck_assert_double_le(after.max_speed, 1e-3);
 }
 END_TEST
 

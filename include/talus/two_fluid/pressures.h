@@ -47,7 +47,10 @@
  * which nothing moves, does not let the bed fall; the face below feels the
  * whole leaf of the surface; and a bed that carries p_s at its top is balanced
  * there too. With plain means the leaf of the surface falls for ever, friction
- * shears the bed with it, and beds gain energy (docs/notes/two_fluid.md).
+ * shears the bed with it, and beds gain energy (docs/notes/two_fluid.md). Where
+ * the surface cuts a leaf chi of a side across is what the bed wets of it, over
+ * what it wets of the other one if that is more; along the vertical s is 1/2
+ * where a leaf rests (surface.h), since its p_s is that of the middle.
  */
 #ifndef TALUS_TWO_FLUID_PRESSURES_H
 #define TALUS_TWO_FLUID_PRESSURES_H

@@ -65,6 +65,7 @@ struct two_fluid {
   struct field *alpha_new; /* at its end */
   struct field *pushed;    /* with an exact yield: by p_s and weight along an
                               axis, m/s^2 */
+  struct field *gain[DIM]; /* of u_f by what the fluid carries; transport.h */
   struct field *load;      /* p_s at its beginning, Pa */
   struct field *hardening; /* what shear by 1 adds to p_s by dilatancy, Pa */
   struct field *p_s;       /* pressure of the grains, Pa */
@@ -91,6 +92,7 @@ struct two_fluid {
                             adaptation, which follows it */
   struct field *phi;     /* solid fraction of the bed in a leaf; surface.h */
   struct field *rest;    /* s of surface.h, 0 but at the surface, Pa */
+  struct field *burden;  /* W of surface.h, Pa */
   struct field *lack;    /* p_s less its mean over a leaf, Pa; surface.h */
   struct field *carried; /* load over half the weight of a leaf, at most 1 */
   struct field *normal[DIM]; /* planes of c */

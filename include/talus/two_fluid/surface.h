@@ -17,13 +17,20 @@
  * the continuum: the difference of p_s from leaf to leaf is the weight between
  * their middles, (alpha_0 + alpha_1)/2 of it. A leaf rests on a wall, or on one
  * below that carries the weight of half of its own grains; and it has fewer
- * grains above than it holds itself, which lie half a grain thick. c is of
- * alpha alone, so nothing else has to be carried or kept.
+ * grains above than it holds itself, which lie half a grain thick.
+ *
+ * On a slope the surface cuts two leaves of a column, one above the other. The
+ * lower one rests, and carries the upper one if it is more than half full: it
+ * has s alpha + W, W = 2 s alpha of the leaf above, and that one rests too,
+ * however thin, as the bed goes on below it. Else the grains of the upper one
+ * carry nothing, nothing holds them, and they slide off whatever the slope. c
+ * is of alpha alone, so nothing else has to be carried or kept.
  *
  * Across the vertical p_s is taken as the mean over the leaf, c p_s: what two
  * leaves filled by c_0 and c_1 push on each other with is (c_0^2 - c_1^2)/2 of
  * the weight, not (c_0 - c_1)/2 of it, which drives thin leaves off as if the
- * surface was twice as steep or more.
+ * surface was twice as steep or more. With W the sum over both leaves of a
+ * column is (c_0 + c_1)^2/2 of it.
  *
  * The key grains.surface turns this on. It is not the default: heaps stand
  * (tests/mesh/test_two_fluid_surface.c), but grains at the top of flat beds,
@@ -47,6 +54,9 @@ void two_fluid_find_surface(struct two_fluid *sim);
 /* Return the part of side s (2d lower, 2d + 1 upper) of leaf i that its bed
  * reaches: 1 unless the surface cuts the leaf. */
 double two_fluid_wetted(const struct two_fluid *sim, int32_t i, int s);
+/* Set the part of the grains of a leaf that counts for its upper face along an
+ * axis (pressures.h). p_s is filled. Collective. */
+void two_fluid_find_contact(struct two_fluid *sim);
 /* As passing of granular_pressure.h; context is the struct two_fluid. */
 double two_fluid_passing(const void *context, int d, int32_t f, double dt,
                          double u_f, double otherwise);

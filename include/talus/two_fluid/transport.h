@@ -4,9 +4,16 @@
  *   a^{n+1} q' = a^n q - dt div(F q_f)
  *
  * with a = alpha and F = alpha u_s, or 1 - alpha and j - F: momentum rides with
- * mass, and what no grains cross does not count. q_f is the donor's value with
- * a slope, half a step earlier; loose grains, with friction at work beside
- * leaves that have none, have no slope.
+ * mass, and what no grains cross does not count. q_f of grains is the donor's
+ * value with a slope, half a step earlier; loose grains, with friction at work
+ * beside leaves that have none, have no slope. q_f of the fluid is that of
+ * advection.h, with u between u^n and what forces have made of it.
+ *
+ * What the fluid carries pushes itself along, and pressure, which is found
+ * before, has to hold against it. So what it will gain is foreseen with the
+ * last fluxes and is in u_f until pressure is found; else u_f would end a step
+ * with a part dt grad(u^2/2) that p of the next step removes. It is taken out
+ * again, so that momentum is kept.
  */
 #ifndef TALUS_TWO_FLUID_TRANSPORT_H
 #define TALUS_TWO_FLUID_TRANSPORT_H
@@ -15,8 +22,11 @@
 
 struct two_fluid;
 
-/* Carry both velocities, phi_p and X over dt and set alpha to alpha_new.
- * Collective. */
+/* Add to u_f what the fluid will gain by what it carries, with the last fluxes.
+ * u_f is filled. Collective. */
+void two_fluid_foresee(struct two_fluid *sim, double dt);
+/* Carry both velocities, phi_p and X over dt and set alpha to alpha_new;
+ * fields_save has kept u^n. Collective. */
 void two_fluid_transport(struct two_fluid *sim, double dt);
 /* Return the part of its grains that leaf i gives away over dt by the last
  * flux; alpha is that of before. */
