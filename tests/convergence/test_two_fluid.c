@@ -231,10 +231,11 @@ static void report_ergun(struct report *report) {
 }
 
 /* Fluidised bed, without friction: the alpha whose drag carries it, in the
- * lower part, above which waves grow. At 16 mm/s these reach down to 2 cm, and
- * 0.6 % are left of the bar of 0.5 %: no bar there. */
+ * lower part while it is uniform. Waves grow upwards through the bed, and those
+ * of 16 mm/s are at 5 cm after 6 s, at 3 cm after 7 s. */
 static void report_expansion(struct report *report) {
   static const double U[] = {0.014, 0.016}, exact[] = {0.5411, 0.5198};
+  static const double time[] = {10, 5};
   for (int k = 0; k < 2; k++) {
     double z[] = {-1, 0.1}, sum = 0, count = 0;
     char norm[64];
@@ -242,7 +243,7 @@ static void report_expansion(struct report *report) {
     struct params p;
     struct two_fluid *sim = fluidised(&keys, &p, z, U[k]);
     sim->closure.param[TWO_FLUID_KT_ANGLE] = 0;
-    const bool good = grains_run(sim, 10, 100000);
+    const bool good = grains_run(sim, time[k], 100000);
     const struct mesh *mesh = sim->grid.mesh;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       if (mesh->x[i][1] > 0.04 || mesh->x[i][1] < 0.01) continue;
@@ -251,9 +252,8 @@ static void report_expansion(struct report *report) {
     const double alpha = mesh_sum(mesh, sum) / mesh_sum(mesh, count);
     snprintf(norm, sizeof norm, "solid fraction at %g mm/s, relative error",
              1e3 * U[k]);
-    const double error = good ? fabs(alpha / exact[k] - 1) : NAN;
-    if (k == 0) report_at_most(report, "fluidised", norm, 5, error, 5e-3);
-    if (k > 0) report_value(report, "fluidised", norm, 5, error);
+    report_at_most(report, "fluidised", norm, 5,
+                   good ? fabs(alpha / exact[k] - 1) : NAN, 5e-3);
     two_fluid_destroy(sim);
   }
 }
