@@ -17,11 +17,21 @@
 #define DT_CHANGE 0.2
 #define PACKED 0.4
 
-/* Return the rate of a phase in leaf i, of a flux through faces. */
-static double rate_of(const struct two_fluid *sim, int32_t i, double alpha,
-                      const double *flux) {
-  return alpha > TWO_FLUID_NONE ? mesh_turnover(sim->grid.mesh, flux, i) / alpha
-                                : 0;
+/* Return how often grains replace those of leaf i, 1/s. alpha is filled. They
+ * pass a face with at least the speed of the flux over the larger alpha of both
+ * sides: what the surface leaves of a bed in a leaf may be next to nothing, and
+ * falls no faster than the rest. */
+static double grain_rate(const struct two_fluid *sim, int32_t i) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double *alpha = sim->alpha->v;
+  double sum = 0;
+  if (!(alpha[i] > TWO_FLUID_NONE)) return 0;
+  for (int s = 0; s < NFACE; s++) {
+    const int32_t there = mesh->stencil[i][stencil_face(s)];
+    sum += fabs(mesh_side(mesh, sim->flux->v, i, s)) /
+           max2(alpha[i], alpha[there]);
+  }
+  return 0.5 * sum / mesh_width(mesh, i);
 }
 
 /* Return that of the fluid, whose flux is j less that of the grains. */
@@ -36,10 +46,9 @@ static double fluid_rate(const struct two_fluid *sim, int32_t i) {
 
 double two_fluid_rate(const struct two_fluid *sim) {
   double most = 0;
-  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-    most = max2(most, rate_of(sim, i, sim->alpha->v[i], sim->flux->v));
-    most = max2(most, fluid_rate(sim, i));
-  }
+  field_fill(sim->grid.mesh, sim->alpha);
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++)
+    most = max2(most, max2(grain_rate(sim, i), fluid_rate(sim, i)));
   return mesh_max(sim->grid.mesh, most);
 }
 

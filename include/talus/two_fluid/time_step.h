@@ -14,7 +14,7 @@ struct two_fluid;
 /* Return dt, at most dt_max. Collective. */
 double two_fluid_time_step(const struct two_fluid *sim, double dt_max);
 /* Return the rate, 1/s, at which the last fluxes replace what leaves hold, the
- * larger of both phases. Collective. */
+ * larger of both phases. Fills alpha. Collective. */
 double two_fluid_rate(const struct two_fluid *sim);
 
 #endif
