@@ -26,11 +26,14 @@ static struct model *model_of(struct four_state *sim) {
   return &sim->model;
 }
 
-/* Say how fast a slope creeps that should rest, at 99 % of eta_S: its grains
- * count as solid up to that shear rate. */
+/* Refuse closures that cannot be, and say how fast a slope creeps that should
+ * rest, at 99 % of eta_S: its grains count as solid up to that shear rate. */
 static void describe(const struct params *params, size_t size, char *text) {
   const struct four_state_keys *keys = params->own;
   const double gamma = 2 * log(100) / keys->param[LEE_HUANG_N];
+  struct four_state_closure closure;
+  four_state_closures(keys, &closure);
+  four_state_closure_release(&closure);
   text[0] = '\0';
   if (keys->regularisation == FOUR_STATE_EXACT) return;
   snprintf(

@@ -125,15 +125,32 @@ static void refuse(const double *param, const char *wrong) {
       param[LEE_HUANG_E_EFF]);
 }
 
+/* Refuse what an exact yield does not read. */
+static void check_yield(const struct four_state_keys *keys) {
+  const double n = keys->param[LEE_HUANG_N];
+  if (keys->regularisation == FOUR_STATE_EXACT && n != FOUR_STATE_N)
+    USER_ERROR(
+        "grains.n = %g has no meaning with regularisation = \"exact\", "
+        "whose friction does not fall at small shear rates: leave it "
+        "out, or say regularisation = \"exponential\"",
+        n);
+}
+
+void four_state_closures(const struct four_state_keys *keys,
+                         struct four_state_closure *closure) {
+  check_yield(keys);
+  const char *wrong =
+      four_state_closure_init(closure, keys->param, keys->knudsen);
+  if (wrong != NULL) refuse(keys->param, wrong);
+}
+
 struct four_state *four_state_new_on(const struct params *params,
                                      struct forest *forest) {
   struct four_state *sim = MEM_NEW(struct four_state, 1);
   sim->model.grid = &sim->grid;
   sim->params = params;
   sim->keys = params->own;
-  const char *wrong = four_state_closure_init(&sim->closure, sim->keys->param,
-                                              sim->keys->knudsen);
-  if (wrong != NULL) refuse(sim->keys->param, wrong);
+  four_state_closures(sim->keys, &sim->closure);
   grid_init(&sim->grid, params, forest);
   add_state(sim);
   add_made(sim);

@@ -82,10 +82,12 @@ sed 's/top = "slip"/top = { "outflow", pressure = 0 }/' \
   "$root/examples/four_state_column.lua" > open.lua
 ends 2 "$talus" run open.lua level=5 -o open
 says 'has no inflow and no outflow'
-ends 2 "$talus" run $column nu_min=0.61 -o wrong
+ends 2 "$talus" check $column nu_min=0.61
 says 'nu_min < nu_0 < nu_max is needed (nu_min = 0.61, nu_0 = 0.6'
 ends 0 "$talus" check $column n=1e4
 says 'creep' && says '2 ln(100)/n = 0.000921/s'
+ends 2 "$talus" check $column n=1e4 regularisation=exact
+says 'n = 10000 has no meaning with regularisation = "exact"'
 ends 2 "$talus" check $column eta_S=-1
 says 'eta_S'
 sed 's/rho_d = param/density = 1, rho_d = param/' \

@@ -13,6 +13,8 @@ enum four_state_regularisation {
   FOUR_STATE_EXACT /* yield.h */
 };
 
+#define FOUR_STATE_N 1e5 /* grains.n, s, unless said: that of the paper */
+
 struct four_state_keys {
   double param[LEE_HUANG_NKEYS]; /* in the order of lee_huang.h */
   double knudsen;                /* mean free paths count beyond this, in d */

@@ -75,6 +75,10 @@ struct four_state {
   double impact;     /* work against pressure that is not stored (work.h) */
 };
 
+/* Prepare the closures for keys; refuses those that cannot be. The caller
+ * releases it. */
+void four_state_closures(const struct four_state_keys *keys,
+                         struct four_state_closure *closure);
 /* Make a state of zeros on a forest, which it takes over. Collective. */
 struct four_state *four_state_new_on(const struct params *params,
                                      struct forest *forest);
