@@ -17,7 +17,7 @@ enum { PICARD = 2, MOST_SOLVES = 8 };
 #define LEAST_NU 1e-6
 /* The first pass only serves the shear rate of the second, and is solved to
  * this times the tolerance. */
-#define FIRST_PASS 10
+#define FIRST_PASS 100
 /* Solves of an exact yield are repeated above a mismatch (yield.h) of UNFIT
  * until it is below FIT. */
 #define UNFIT 0.02
