@@ -9,6 +9,7 @@
 #include "talus/minmax.h"
 #include "talus/two_fluid/properties.h"
 #include "talus/two_fluid/state.h"
+#include "talus/two_fluid_grains.h"
 
 /* Sums over leaves. */
 enum {
@@ -198,4 +199,67 @@ void two_fluid_measure(struct two_fluid *sim, struct two_fluid_measures *m) {
   find_extremes(sim, m);
   find_contour(sim, m);
   find_outline(sim, m);
+}
+
+/* Return the shear rate of leaf i, the mean over its faces. */
+static double shear_rate(const struct two_fluid *sim, int32_t i) {
+  const int32_t *face = sim->grid.mesh->cell_face[i];
+  double sum = 0;
+  for (int s = 0; s < NFACE; s++) sum += sim->shear_f[TWO_FLUID_S]->v[face[s]];
+  return sum / NFACE;
+}
+
+/* Return what viscosity gives leaf i of stress, and friction unless it yields
+ * exactly: then what friction grows by with the shear rate. */
+static double viscous_stress(const struct two_fluid *sim, int32_t i) {
+  const struct two_fluid_closure *c = &sim->closure;
+  const double gamma = shear_rate(sim, i), p_s = max2(sim->p_s->v[i], 0);
+  const double phi = sim->phi->v[i], eta = sim->eta->v[i];
+  const double Theta = sim->Theta->v[i];
+  const struct two_fluid_stress s =
+      two_fluid_stress(c, phi, p_s, gamma, eta, Theta);
+  if (!sim->exact)
+    return two_fluid_capped(&s, gamma, sim->keys->gamma_r, sim->eta_max) *
+           gamma;
+  const double held = two_fluid_stress(c, phi, p_s, 0, eta, Theta).tau_y;
+  return s.eta * gamma + max2(s.tau_y - held, 0);
+}
+
+/* Set `stress` [nfaces_all] to the yield stress that faces hold, Pa. */
+static void find_held(const struct two_fluid *sim, double *stress) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct yield *yield = &sim->yield;
+  double *rows[STRAIN_ROWS];
+  for (int k = 0; k < yield->nrows; k++) rows[k] = yield->s[k]->v;
+  for (int d = 0; d < DIM; d++)
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++)
+      stress[f] = yield->tau_y->v[f] > 0
+                      ? sqrt(strain_norm_squared(yield->nrows, rows, d, f))
+                      : 0;
+  mesh_fill_faces(mesh, 1, &stress);
+}
+
+/* Return the mean of a stress over the faces of leaf i that have one. */
+static double mean_held(const struct mesh *mesh, const double *stress,
+                        int32_t i) {
+  double sum = 0;
+  int n = 0;
+  for (int s = 0; s < NFACE; s++) {
+    const double here = stress[mesh->cell_face[i][s]];
+    sum += here, n += here > 0;
+  }
+  return n > 0 ? sum / n : 0;
+}
+
+void two_fluid_find_stress(const struct two_fluid *sim, double *stress) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *held = MEM_NEW(double, mesh->nfaces_all);
+  if (sim->exact) find_held(sim, held);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    stress[i] = 0;
+    if (!two_fluid_has_grains(sim, i)) continue;
+    stress[i] = viscous_stress(sim, i);
+    if (sim->exact) stress[i] += mean_held(mesh, held, i);
+  }
+  mem_free(held);
 }

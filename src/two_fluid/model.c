@@ -75,22 +75,26 @@ static bool is_at_rest(struct model *model) {
   return sim->slow_time >= params->rest_time;
 }
 
+/* Make the array of a field on demand, or free it. */
+static void provide(struct field *field, int32_t n, bool make) {
+  mem_free(field->v);
+  field->v = make ? MEM_NEW(double, n) : NULL;
+}
+
 static void outputs(struct model *model, bool make) {
   struct two_fluid *sim = of(model);
   const int32_t n = sim->grid.mesh->nleaves;
   struct field *state = sim->yield.state; /* NULL unless exact */
-  if (state) {
-    mem_free(state->v);
-    state->v = make ? MEM_NEW(double, n) : NULL;
-  }
+  if (state) provide(state, n, make);
+  provide(sim->stress, n, make);
   for (int d = 0; d < DIM; d++) {
-    mem_free(sim->mean[d]->v);
-    sim->mean[d]->v = make ? MEM_NEW(double, n) : NULL;
+    provide(sim->mean[d], n, make);
     for (int32_t i = 0; make && i < n; i++)
       sim->mean[d]->v[i] = two_fluid_mean_velocity(sim, i, d);
   }
   if (!make) return;
   two_fluid_properties(sim);
+  two_fluid_find_stress(sim, sim->stress->v);
   for (int32_t i = 0; i < n; i++)
     sim->c->v[i] = min2(sim->alpha->v[i] / sim->keys->alpha_start, 1);
   mesh_touch(sim->grid.mesh, sim->c->v);

@@ -112,6 +112,13 @@ static void add_state(struct two_fluid *sim) {
                          &remap_flux);
 }
 
+/* Give back the array of a field that is made for output alone. */
+static void make_on_demand(struct field *field) {
+  field->on_demand = true;
+  mem_free(field->v);
+  field->v = NULL;
+}
+
 static void add_leaves(struct two_fluid *sim) {
   static const char *const mean[] = {"velocity_x", "velocity_y", "velocity_z"};
   static const char *const upper[] = {"upper_x", "upper_y", "upper_z"};
@@ -146,10 +153,11 @@ static void add_leaves(struct two_fluid *sim) {
     sim->mean[d] = add(sim, mean[d], "m/s",
                        "flux of the grains over their fraction", NULL, true);
     sim->mean[d]->component = d;
-    sim->mean[d]->on_demand = true;
-    mem_free(sim->mean[d]->v);
-    sim->mean[d]->v = NULL;
+    make_on_demand(sim->mean[d]);
   }
+  sim->stress =
+      add(sim, "stress", "Pa", "stress of the grains, sqrt(T:T/2)", NULL, true);
+  make_on_demand(sim->stress);
 }
 
 /* Add the fields of an exact yield. */
@@ -166,9 +174,7 @@ static void add_yield(struct two_fluid *sim) {
   yield->still = add(sim, "still", "1", "", NULL, false);
   yield->state = add(sim, "yield_state", "1", "0: held, 1: at the yield stress",
                      NULL, true);
-  yield->state->on_demand = true;
-  mem_free(yield->state->v);
-  yield->state->v = NULL;
+  make_on_demand(yield->state);
 }
 
 static void add_faces(struct two_fluid *sim) {

@@ -43,6 +43,9 @@ void two_fluid_measure_layers(const struct two_fluid *sim, double **layer);
 double two_fluid_energy(const struct two_fluid *sim);
 /* Return component d of the flux of the grains over alpha in leaf i, m/s. */
 double two_fluid_mean_velocity(const struct two_fluid *sim, int32_t i, int d);
+/* Set stress [nleaves] to that of the grains, sqrt(T:T/2), Pa, 0 where there
+ * are none, after two_fluid_properties. Collective. */
+void two_fluid_find_stress(const struct two_fluid *sim, double *stress);
 /* Return the largest speed of leaves within the contour, by their flux, m/s.
  * Collective. */
 double two_fluid_carrying_speed(const struct two_fluid *sim);

@@ -101,6 +101,7 @@ struct two_fluid {
 
   /* For output, on demand */
   struct field *mean[DIM]; /* flux of the grains over alpha, m/s */
+  struct field *stress;    /* of the grains, Pa */
 
   double travel;    /* cells that grains may have moved since adaptation */
   double slow_time; /* that the grains have been slow, s */
