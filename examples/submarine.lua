@@ -27,12 +27,12 @@
 --
 -- Cost. Loose, 3 s, leaves of 2.5 mm: 510 steps, half a minute on one core.
 --
--- Expect. The loose front is at 17.2 cm after 0.64 s and at 22.2 cm after 1.9 s; in
+-- Expect. The loose front is at 17.2 cm after 0.64 s and at 21.6 cm after 1.9 s; in
 -- the experiment at 16.3 and 20.3 cm, and at 21.2 cm in the end, while here the
 -- surface creeps on. The dense column, with planes in the leaves of its surface,
 -- is at 6.7 cm after 2 s, and at 9.4 cm after 10 s on level 3; in the experiment
 -- at 9.3 and 12.1 cm. The liquid at the floor is pressed by +144 Pa in the loose
--- bed at 2 s, here by 108 Pa, and by -126 Pa in the dense one at 1.13 s, here by
+-- bed at 2 s, here by 110 Pa, and by -126 Pa in the dense one at 1.13 s, here by
 -- -226 Pa (docs/notes/two_fluid.md).
 --
 -- Try. dense=1 stop=30; alpha=0.57; closures of other codes: closure="ktgf".
