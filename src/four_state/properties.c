@@ -101,29 +101,43 @@ static void fill_positive(struct four_state *sim) {
   mesh_fill_potential(mesh, sim->weight->v, 1, &sim->p->v, &bc, false);
 }
 
-/* Find how well grains touch, 1 where they carry at least half the weight of a
- * leaf, and the faces beside leaves in which they do not: what moves there is
- * not continued by the grains of a bed. */
-static void find_skin(struct four_state *sim) {
+/* Find how well the grains of leaves touch, 1 where they carry at least half
+ * the weight of a leaf. */
+static void find_touches(struct four_state *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *m = sim->touches->v, g2 = 0;
+  double g2 = 0;
   for (int d = 0; d < DIM; d++)
     g2 += sim->params->gravity[d] * sim->params->gravity[d];
   const double weight = sim->closure.param[LEE_HUANG_RHO_D] * sqrt(g2);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double half = 0.5 * weight * mesh->h[i] * sim->nu->v[i];
-    m[i] = NO_GRAINS;
+    double *part = &sim->touches->v[i];
+    *part = NO_GRAINS;
     if (!four_state_has_grains(sim, i)) continue;
-    m[i] = half > 0 ? min2(max2(sim->p->v[i], 0) / half, 1) : 1;
-    m[i] = max2(m[i], LOOSE);
+    *part = half > 0 ? min2(max2(sim->p->v[i], 0) / half, 1) : 1;
+    *part = max2(*part, LOOSE);
   }
-  mesh_touch(mesh, m);
-  field_fill(mesh, sim->touches);
+}
+
+/* Find the faces beside leaves in which grains do not touch: what moves there
+ * is not continued by the grains of a bed. Where none touch around a leaf there
+ * is no bed. */
+static void find_skin(struct four_state *sim) {
+  static const struct bc neumann[MESH_MAX_PATCHES];
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct bc *bc = neumann;
+  double *m = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  for (int32_t i = 0; i < mesh->nleaves; i++) m[i] = sim->touches->v[i] > LOOSE;
+  mesh_spread(mesh, m);
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    m[i] = m[i] > 0 ? sim->touches->v[i] : 1;
+  mesh_fill(mesh, 1, &m, &bc, false);
   for (int32_t i = mesh->begin_virtual; i < mesh->ncells; i++)
     m[i] = min2(max2(m[i], NO_GRAINS), 1);
   sim->skin->n = 0; /* it may be that of an earlier mesh */
   sim->skin->grains_only = true;
   skin_find(mesh, m, 1, sim->skin);
+  scratch_give(&sim->scratch, __func__);
 }
 
 void four_state_properties(struct four_state *sim) {
@@ -143,6 +157,7 @@ void four_state_properties(struct four_state *sim) {
   fill_positive(sim);
   set_upper(sim);
   set_mobility(sim);
+  find_touches(sim);
   find_skin(sim);
 }
 

@@ -16,9 +16,9 @@
  * the force of its pressure by their mass, so that none is lost. The side of a
  * coarse leaf has the mean by mass of its finer faces.
  *
- * Skin. Leaves touch by min(1, p/(h/2 rho_d nu |g|)); tangential differences
- * hardly read those that do not (skin.h): grains that slide on a heap would
- * shear it with them, and so would the vacuum.
+ * Skin. Leaves touch by min(1, p/(h/2 rho_d nu |g|)); around those that do,
+ * tangential differences hardly read those that do not (skin.h): grains that
+ * slide on a heap would shear it with them, and so would the vacuum.
  */
 #ifndef TALUS_FOUR_STATE_PROPERTIES_H
 #define TALUS_FOUR_STATE_PROPERTIES_H
