@@ -21,17 +21,6 @@
  * little, r is made orthogonal to all q_j once more, as what rounding leaves of
  * r along them is out of reach of new directions.
  *
- * Rounding. z and q are stored as floats, all else is double. z is rounded
- * before A is applied, so that A z is exact; z is not made orthogonal as q is,
- * because A times the rounding of z may be larger than r where a stiff body
- * moves. The rounding of q makes r wrong by at most
- *   lost = 2^-24 sum_k |y_k| max |q_k / rho|,
- * which the test adds to max |r / rho|. Where lost is more than half the
- * tolerance and r no larger than lost, r = b - A x is computed again and the
- * iteration starts anew. Where r has grown at first, as it does with stiff
- * bodies, or is not reduced, numbers of directions become sums of two floats,
- * 48 bits, for the rest of the solve.
- *
  * docs/notes/solver.md has the trials.
  */
 #ifndef TALUS_KRYLOV_H
@@ -55,27 +44,15 @@ struct krylov_system {
   /* Called once before the first iteration, if there is any. It makes M and
    * the weights. Collective. */
   void (*prepare)(void *context);
-  /* z = M r / size, M a cheap approximation of A^-1, size = max |r/rho|: a
-   * float's range is z's alone. z[0] is rounded; z[1] what that misses, unless
-   * it is NULL. Collective. */
-  void (*precondition)(void *context, const double *r, double size,
-                       float *const z[2]);
+  /* z = M r, M a cheap approximation of A^-1, size = max |r/rho|. Collective.
+   */
+  void (*precondition)(void *context, const double *r, double size, double *z);
   /* q[part] = A z, [n], in work space of the system's that may be written to
    * and lasts until the next call of any of these. Collective. */
-  void (*apply)(void *context, float *const z[2], double *q[KRYLOV_PARTS]);
-  /* r = b - A x, x as given to krylov_solve. Collective. */
-  void (*residual)(void *context, double *const x[], double *r);
+  void (*apply)(void *context, const double *z, double *q[KRYLOV_PARTS]);
   const float *weight;   /* [nparts * n] w, > 0 */
   const double *density; /* [n] rho, same for all parts; NULL: 1 */
 };
-
-/* Set v [n] to n numbers of a direction from number `at` on. */
-static inline void krylov_direction(int32_t n, int64_t at, float *const z[2],
-                                    double *v) {
-  for (int32_t i = 0; i < n; i++) v[i] = (double)z[0][at + i];
-  if (!z[1]) return;
-  for (int32_t i = 0; i < n; i++) v[i] += (double)z[1][at + i];
-}
 
 struct krylov_space; /* directions, kept between solves */
 

@@ -76,7 +76,7 @@ static void mixed_normal(const double c[PLANE_STENCIL], double n[DIM]) {
     largest = max2(largest, fabs(centred[d][d]));
     youngs_largest = max2(youngs_largest, fabs(youngs[d]));
   }
-  if (largest > youngs_largest || largest <= 0.) {
+  if (tie * largest > youngs_largest || largest <= 0.) {
     for (int d = 0; d < DIM; d++) n[d] = youngs[d];
     return;
   }

@@ -47,8 +47,7 @@ static void solve(struct hierarchy *h, int c) {
     for (int32_t k = 0; k < n; k++) p[k] = z[k] + beta * p[k];
     apply(h, c, p, q);
     for (int32_t k = 0; k < n; k++) pq += p[k] * q[k];
-    /* Only the constant is left, which must not fill the bits of a float; with
-     * mass it may be all there is. */
+    /* Only the constant is left; with mass it may be all there is. */
     if (!(pq > (h->has_mass ? 1e-14 : 1e-11) * rz)) break;
     const double a = rz / pq;
     for (int32_t k = 0; k < n; k++) {

@@ -225,8 +225,7 @@ static void cycle(struct hierarchy *h) {
   }
 }
 
-void cycle_run(struct hierarchy *h, double factor, const double *r,
-               float *const e[2]) {
+void cycle_run(struct hierarchy *h, double factor, const double *r, double *e) {
   const struct mesh *mesh = h->mesh;
   const size_t size = (size_t)h->nslots * sizeof(double);
   h->ncycles++;
@@ -243,11 +242,7 @@ void cycle_run(struct hierarchy *h, double factor, const double *r,
   for (int c = 0; c < h->nparts; c++) {
     const int64_t at = (int64_t)c * mesh->nleaves;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      e[0][at + i] = (float)h->e[c][h->leaf_slot[i]];
-    }
-    if (!e[1]) continue;
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      e[1][at + i] = (float)(h->e[c][h->leaf_slot[i]] - (double)e[0][at + i]);
+      e[at + i] = h->e[c][h->leaf_slot[i]];
     }
   }
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "talus/krylov.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -17,20 +16,15 @@
  * what it began with. */
 #define KRYLOV_NEAR 10
 #define KRYLOV_LEFT 1e-3
-/* Floats are too short where they may lose this part of the residual that was
- * there at first: it has grown tenfold or more. */
-#define KRYLOV_GROWTH 1e-6
 /* A step that takes less than this part of <r, r> is a poor one. */
 #define KRYLOV_LITTLE 0.1
 
 struct krylov_space {
   int64_t size; /* of each direction */
   int used;     /* directions of the solve under way */
-  int terms;    /* each number is a sum of: 1 float, or 2 for 48 bits */
-  float *z[KRYLOV_DIRECTIONS][2], *q[KRYLOV_DIRECTIONS][2]; /* NULL: never */
-  double inverse[KRYLOV_DIRECTIONS];                        /* 1 / <q, q> */
-  double most[KRYLOV_DIRECTIONS]; /* bound of max |q / rho| */
-  double a[KRYLOV_DIRECTIONS];    /* steps that r has made and x has not */
+  double *z[KRYLOV_DIRECTIONS], *q[KRYLOV_DIRECTIONS]; /* NULL: never */
+  double inverse[KRYLOV_DIRECTIONS];                   /* 1 / <q, q> */
+  double a[KRYLOV_DIRECTIONS]; /* steps that r has made and x has not */
   double h[KRYLOV_DIRECTIONS][KRYLOV_DIRECTIONS]; /* h_jk at [k][j], j < k */
 };
 
@@ -40,11 +34,9 @@ struct krylov_space *krylov_space_new(void) {
 
 static void space_clear(struct krylov_space *space) {
   for (int k = 0; k < KRYLOV_DIRECTIONS; k++) {
-    for (int t = 0; t < 2; t++) {
-      mem_free(space->z[k][t]);
-      mem_free(space->q[k][t]);
-      space->z[k][t] = space->q[k][t] = NULL;
-    }
+    mem_free(space->z[k]);
+    mem_free(space->q[k]);
+    space->z[k] = space->q[k] = NULL;
   }
 }
 
@@ -57,7 +49,6 @@ void krylov_space_destroy(struct krylov_space *space) {
 /* Open a space for vectors of `size` numbers. */
 static void space_open(struct krylov_space *space, int64_t size) {
   space->used = 0;
-  space->terms = 1;
   if (size <= space->size) return;
   space_clear(space);
   space->size = size;
@@ -65,11 +56,9 @@ static void space_open(struct krylov_space *space, int64_t size) {
 
 static void space_take(struct krylov_space *space, int k) {
   space->a[k] = 0;
-  for (int t = 0; t < space->terms; t++) {
-    if (space->z[k][t]) continue;
-    space->z[k][t] = MEM_NEW(float, space->size);
-    space->q[k][t] = MEM_NEW(float, space->size);
-  }
+  if (space->z[k]) return;
+  space->z[k] = MEM_NEW(double, space->size);
+  space->q[k] = MEM_NEW(double, space->size);
 }
 
 static void sum_ranks(const struct krylov_system *s, int n, double *v) {
@@ -87,17 +76,17 @@ struct lanes {
 
 /* Sum of w^2 a b. */
 static void add_products(int64_t n, const float *w, const double *a,
-                         const float *b, struct lanes *restrict lanes) {
+                         const double *b, struct lanes *restrict lanes) {
   int64_t i = 0;
   for (; i + LANES <= n; i += LANES) {
     for (int k = 0; k < LANES; k++) {
       const double s = (double)w[i + k] * (double)w[i + k];
-      lanes->sum[k] += s * a[i + k] * (double)b[i + k];
+      lanes->sum[k] += s * a[i + k] * b[i + k];
     }
   }
   for (int k = 0; i + k < n; k++) {
     const double s = (double)w[i + k] * (double)w[i + k];
-    lanes->sum[k] += s * a[i + k] * (double)b[i + k];
+    lanes->sum[k] += s * a[i + k] * b[i + k];
   }
 }
 
@@ -170,8 +159,8 @@ static double max_residual(const struct krylov_system *s, const double *r) {
 
 /* Add f b to a. */
 static void add_to(int64_t n, double *restrict a, double f,
-                   const float *restrict b) {
-  for (int64_t i = 0; i < n; i++) a[i] += f * (double)b[i];
+                   const double *restrict b) {
+  for (int64_t i = 0; i < n; i++) a[i] += f * b[i];
 }
 
 /* Set c_j = <v, q_j> / <q_j, q_j>, j of all directions so far. */
@@ -179,14 +168,12 @@ static void project(const struct krylov_system *s,
                     const struct krylov_space *space, double *const v[],
                     double *c) {
   struct lanes lanes[KRYLOV_DIRECTIONS] = {{{0}}};
-  const int terms = space->terms;
   for (int p = 0; p < s->nparts; p++) {
     const int64_t at = (int64_t)p * s->n;
     for (int64_t i = 0; i < s->n; i += BLOCK) {
-      for (int k = 0; k < space->used * terms; k++) {
-        const float *q = space->q[k / terms][k % terms] + at;
-        add_products(block_size(s->n, i), s->weight + at + i, v[p] + i, q + i,
-                     &lanes[k / terms]);
+      for (int k = 0; k < space->used; k++) {
+        add_products(block_size(s->n, i), s->weight + at + i, v[p] + i,
+                     space->q[k] + at + i, &lanes[k]);
       }
     }
   }
@@ -199,14 +186,12 @@ static void project(const struct krylov_system *s,
 static void add_all(const struct krylov_system *s,
                     const struct krylov_space *space, double *const v[],
                     double sign, const double *c,
-                    float *const d[KRYLOV_DIRECTIONS][2]) {
-  const int terms = space->terms;
+                    double *const d[KRYLOV_DIRECTIONS]) {
   for (int p = 0; p < s->nparts; p++) {
     const int64_t at = (int64_t)p * s->n;
     for (int64_t i = 0; i < s->n; i += BLOCK) {
-      for (int k = 0; k < space->used * terms; k++) {
-        add_to(block_size(s->n, i), v[p] + i, sign * c[k / terms],
-               d[k / terms][k % terms] + at + i);
+      for (int k = 0; k < space->used; k++) {
+        add_to(block_size(s->n, i), v[p] + i, sign * c[k], d[k] + at + i);
       }
     }
   }
@@ -221,17 +206,6 @@ static void orthogonalise(const struct krylov_system *s,
   add_all(s, space, v, -1, c, space->q);
 }
 
-/* Set q = v, rounded to its terms, and v likewise. */
-static void round_to(int64_t n, int terms, double *v, float *const q[2],
-                     int64_t at) {
-  for (int64_t i = 0; i < n; i++) {
-    q[0][at + i] = (float)v[i];
-    const double rest = v[i] - (double)q[0][at + i];
-    if (terms > 1) q[1][at + i] = (float)rest;
-    v[i] -= terms > 1 ? rest - (double)q[1][at + i] : rest;
-  }
-}
-
 /* Store v as the q of the next direction. Leaves <r, q>, <q, q>, <r, r>. */
 static void store(const struct krylov_system *s, struct krylov_space *space,
                   double *const v[], const double *r, double product[3]) {
@@ -240,11 +214,9 @@ static void store(const struct krylov_system *s, struct krylov_space *space,
     for (int64_t i = 0; i < s->n; i += BLOCK) {
       const int64_t at = (int64_t)p * s->n + i, size = block_size(s->n, i);
       const float *w = s->weight + at;
-      float *const *q = space->q[space->used];
-      round_to(size, space->terms, v[p] + i, q, at);
-      for (int t = 0; t < space->terms; t++) {
-        add_products(size, w, r + at, q[t] + at, &lanes[0]);
-      }
+      memcpy(space->q[space->used] + at, v[p] + i,
+             (size_t)size * sizeof(double));
+      add_products(size, w, r + at, v[p] + i, &lanes[0]);
       add_squares(size, w, v[p] + i, &lanes[1]);
       add_squares(size, w, r + at, &lanes[2]);
     }
@@ -262,9 +234,8 @@ static void make_direction(const struct krylov_system *s,
   const int k = space->used;
   double *q[KRYLOV_PARTS];
   space_take(space, k);
-  float *const z[] = {space->z[k][0], space->terms > 1 ? space->z[k][1] : NULL};
-  s->precondition(s->context, r, size, z);
-  s->apply(s->context, z, q);
+  s->precondition(s->context, r, size, space->z[k]);
+  s->apply(s->context, space->z[k], q);
   orthogonalise(s, space, q, space->h[k]);
   store(s, space, q, r, product);
 }
@@ -277,22 +248,9 @@ static void find_steps(const struct krylov_space *space, double *y) {
   }
 }
 
-/* Bound of max |r/rho| of what is missing in r: y q is as wrong as q. What 48
- * bits lose is round-off. */
-static double rounding(const struct krylov_space *space) {
-  double y[KRYLOV_DIRECTIONS], sum = 0;
-  if (space->terms > 1) return 0;
-  find_steps(space, y);
-  for (int k = 0; k < space->used; k++) sum += fabs(y[k]) * space->most[k];
-  return 0.5 * (double)FLT_EPSILON * sum;
-}
-
 /* Where an iteration stands. */
 struct progress {
   double size;      /* max |r/rho| */
-  double start;     /* the same when r was last taken from x */
-  double lost;      /* bound of what rounding took from r since */
-  double forgotten; /* the part of it that directions forgotten did */
   int waited;       /* iterations since <r, r> was halved */
   double reference; /* <r, r> then, 0: none yet */
 };
@@ -305,34 +263,11 @@ static void progress_count(struct progress *p, double rr) {
 
 /* Let x follow r and forget the directions. */
 static void restart(const struct krylov_system *s, struct krylov_space *space,
-                    struct progress *p, double *const x[]) {
+                    double *const x[]) {
   double y[KRYLOV_DIRECTIONS];
   find_steps(space, y);
   add_all(s, space, x, 1, y, space->z);
   space->used = 0;
-  p->forgotten = p->lost;
-}
-
-/* Is r so wrong, or so hard to reduce, that it must be taken from x? */
-static bool must_renew(const struct krylov_space *space,
-                       const struct progress *p, double tolerance) {
-  if (space->terms > 1) return false;
-  if (p->waited == KRYLOV_PATIENCE) return true;
-  return p->lost > 0.5 * tolerance &&
-         (p->size <= p->lost || p->lost > KRYLOV_GROWTH * p->start);
-}
-
-/* Compute r = b - A x anew; directions get longer numbers where floats do not
- * do. */
-static void renew(const struct krylov_system *s, struct krylov_space *space,
-                  struct progress *p, double *r, double *const x[]) {
-  const bool poor =
-      p->waited == KRYLOV_PATIENCE || p->lost > KRYLOV_GROWTH * p->start;
-  restart(s, space, p, x);
-  s->residual(s->context, x, r);
-  const double size = max_residual(s, r);
-  if (poor || size > 0.1 * p->start) space->terms = 2;
-  *p = (struct progress){.size = size, .start = size};
 }
 
 /* Subtract a q from r along the next direction. Where that is little gain, what
@@ -344,26 +279,21 @@ static void step(const struct krylov_system *s, struct krylov_space *space,
   const int k = space->used++;
   const double a = product[0] / product[1];
   double *part[KRYLOV_PARTS], c[KRYLOV_DIRECTIONS];
-  for (int t = 0; t < space->terms; t++) {
-    add_to((int64_t)s->n * s->nparts, r, -a, space->q[k][t]);
-  }
+  add_to((int64_t)s->n * s->nparts, r, -a, space->q[k]);
   space->a[k] = a;
   if (a * product[0] < KRYLOV_LITTLE * product[2]) {
     for (int e = 0; e < s->nparts; e++) part[e] = r + (int64_t)e * s->n;
     orthogonalise(s, space, part, c);
     for (int j = 0; j <= k; j++) space->a[j] += c[j];
   }
-  const double before = p->size;
   p->size = max_residual(s, r);
-  space->most[k] = (before + p->size) / fabs(a);
-  p->lost = p->forgotten + rounding(space);
 }
 
 /* Make one iteration; returns false if it leads nowhere. */
 static bool iterate(const struct krylov_system *s, struct krylov_space *space,
                     struct progress *p, double *r, double *const x[]) {
   double product[3];
-  if (space->used == KRYLOV_DIRECTIONS) restart(s, space, p, x);
+  if (space->used == KRYLOV_DIRECTIONS) restart(s, space, x);
   make_direction(s, space, r, p->size, product);
   if (!isfinite(product[0] / product[1]) || product[0] == 0) return false;
   progress_count(p, product[2]);
@@ -375,7 +305,7 @@ static bool iterate(const struct krylov_system *s, struct krylov_space *space,
  * round-off that two iterations cannot halve is small enough. */
 static bool is_done(const struct progress *p, const struct solve_stats *stats,
                     double tolerance) {
-  const double size = p->size + p->lost, guess = KRYLOV_GUESS * tolerance;
+  const double size = p->size, guess = KRYLOV_GUESS * tolerance;
   const double before = stats->residual_before;
   if (stats->iterations == 0) return size <= guess;
   if (size > tolerance) return false;
@@ -389,7 +319,7 @@ struct solve_stats krylov_solve(const struct krylov_system *s,
                                 double *const x[]) {
   struct solve_stats stats = {.status = SOLVE_STALLED};
   struct progress p = {0};
-  p.start = p.size = max_residual(s, r);
+  p.size = max_residual(s, r);
   stats.residual_before = p.size;
   space_open(space, (int64_t)s->n * s->nparts);
   for (;;) {
@@ -401,10 +331,6 @@ struct solve_stats krylov_solve(const struct krylov_system *s,
     }
     if (stats.iterations == max_iterations) break;
     if (stats.iterations == 0) s->prepare(s->context);
-    if (must_renew(space, &p, tolerance)) {
-      renew(s, space, &p, r, x);
-      continue;
-    }
     if (p.waited == KRYLOV_PATIENCE) break;
     if (iterate(s, space, &p, r, x)) {
       stats.iterations++;
@@ -412,9 +338,9 @@ struct solve_stats krylov_solve(const struct krylov_system *s,
       p.waited = KRYLOV_PATIENCE;
     }
   }
-  if (stats.iterations > 0 && p.size + p.lost <= tolerance) {
+  if (stats.iterations > 0 && p.size <= tolerance) {
     stats.status = SOLVE_CONVERGED;
   }
-  restart(s, space, &p, x);
+  restart(s, space, x);
   return stats;
 }

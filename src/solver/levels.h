@@ -206,10 +206,8 @@ void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
 /* Return what lambda adds to the flux out of node i through its face f. */
 double sweep_bulk_flux(const struct hierarchy *h, int32_t i, int f);
 /* Find e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times
- * `factor`; e likewise, e[0] rounded and e[1] what that misses, if it is not
- * NULL. Collective. */
-void cycle_run(struct hierarchy *h, double factor, const double *r,
-               float *const e[2]);
+ * `factor`; e likewise. Collective. */
+void cycle_run(struct hierarchy *h, double factor, const double *r, double *e);
 /* Watch the residual before each cycle: if the first one has raised it, the
  * others relax nodes near jumps of the coefficient more often (rough.c). Uses
  * h->e. Collective. */

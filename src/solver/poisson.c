@@ -2,6 +2,7 @@
 #include "talus/poisson.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "levels.h"
 #include "talus/error.h"
@@ -46,17 +47,16 @@ static void operate(const struct context *k, const double *p, double *q) {
   }
 }
 
-static void apply(void *context, float *const z[2], double *q[]) {
+static void apply(void *context, const double *z, double *q[]) {
   const struct context *k = context;
   double *p = k->h->work_cells;
-  krylov_direction(k->mesh->nleaves, 0, z, p);
+  memcpy(p, z, (size_t)k->mesh->nleaves * sizeof *z);
   mesh_fill_potential(k->mesh, k->rho, 1, &p, &k->bc, true);
   operate(k, p, p);
   q[0] = p;
 }
 
-static void residual(void *context, double *const p[], double *r) {
-  const struct context *k = context;
+static void residual(const struct context *k, double *const p[], double *r) {
   mesh_fill_potential(k->mesh, k->rho, 1, p, &k->bc, false);
   operate(k, p[0], r);
   for (int32_t i = 0; i < k->mesh->nleaves; i++) {
@@ -65,10 +65,10 @@ static void residual(void *context, double *const p[], double *r) {
 }
 
 static void precondition(void *context, const double *r, double size,
-                         float *const z[2]) {
+                         double *z) {
   const struct context *k = context;
   rough_watch(k->h, size);
-  cycle_run(k->h, -1 / size, r, z);
+  cycle_run(k->h, -1, r, z);
 }
 
 /* Does any face or any mass fix p itself? */
@@ -153,7 +153,6 @@ struct solve_stats poisson_solve(const struct mesh *mesh, struct hierarchy *h,
                                        .prepare = prepare,
                                        .precondition = precondition,
                                        .apply = apply,
-                                       .residual = residual,
                                        .weight = h->weight};
   double *r = h->residual;
   residual(&context, &p, r);

@@ -29,10 +29,12 @@ static inline void face_places(const struct mesh *mesh, int d, int32_t f,
   place[1] = place[0] + stencil_step(d);
 }
 
-/* Return the part of the mass of a node that is grains. */
+/* Return the part of the mass of a node that is grains. Round-off of a leaf
+ * without any must not decide which of its lines count. */
 static inline double grain_part(double c, double ratio) {
   c = min2(max2(c, 0), 1);
-  return c / (c + (1 - c) * ratio);
+  const double part = c / (c + (1 - c) * ratio);
+  return part < WHOLE ? 0 : part;
 }
 
 /* Weigh the lines along t of face f of axis d, `grains` being M and m that of

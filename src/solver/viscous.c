@@ -181,19 +181,19 @@ static void operate(const struct context *k, double *const u[DIM],
   }
 }
 
-static void apply(void *context, float *const z[2], double *q[]) {
+static void apply(void *context, const double *z, double *q[]) {
   const struct context *k = context;
   const struct mesh *mesh = k->mesh;
   for (int e = 0; e < DIM; e++) {
     q[e] = k->h->work_cells + (int64_t)e * mesh->ncells;
-    krylov_direction(mesh->nleaves, (int64_t)e * mesh->nleaves, z, q[e]);
+    memcpy(q[e], z + (int64_t)e * mesh->nleaves,
+           (size_t)mesh->nleaves * sizeof *z);
   }
   mesh_fill(mesh, DIM, q, k->bc, true);
   operate(k, q, q);
 }
 
-static void residual(void *context, double *const u[], double *r) {
-  const struct context *k = context;
+static void residual(const struct context *k, double *const u[], double *r) {
   const int32_t n = k->mesh->nleaves;
   double *part[DIM];
   for (int e = 0; e < DIM; e++) part[e] = r + (int64_t)e * n;
@@ -205,10 +205,10 @@ static void residual(void *context, double *const u[], double *r) {
 }
 
 static void precondition(void *context, const double *r, double size,
-                         float *const z[2]) {
+                         double *z) {
   const struct context *k = context;
   rough_watch(k->h, size);
-  cycle_run(k->h, 1 / size, r, z);
+  cycle_run(k->h, 1, r, z);
 }
 
 static void prepare(void *context) {
@@ -236,7 +236,6 @@ struct solve_stats viscous_solve(const struct mesh *mesh, struct hierarchy *h,
                                        .prepare = prepare,
                                        .precondition = precondition,
                                        .apply = apply,
-                                       .residual = residual,
                                        .weight = h->weight,
                                        .density = rho};
   struct solve_stats stats = krylov_solve(&system, h->krylov, tolerance,

@@ -573,7 +573,8 @@ static double carrying_tolerance(const struct params *params) {
 }
 
 /* Make of a projection one with a gas that weighs nothing, so that its currents
- * are felt by itself alone, in scratch that end_light gives back. */
+ * are felt by itself alone, in scratch that end_light gives back. Traces of
+ * grains weigh nothing either: round-off of c must not outweigh the gas. */
 static struct projection begin_light(struct two_phase *sim,
                                      const struct projection *projection) {
   static const struct bc neumann[MESH_MAX_PATCHES];
@@ -583,8 +584,13 @@ static struct projection begin_light(struct two_phase *sim,
   struct projection light = *projection;
   double *rho = scratch_take_one(&sim->scratch, FIELD_CELL, "light");
   double *alpha_f = scratch_take_one(&sim->scratch, FIELD_FACE, "light");
+  double *c = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
   field_fill(mesh, sim->c);
-  properties_density(mesh, density, sim->c->v, sim->grid.closed, rho, alpha_f);
+  for (int32_t i = 0; i < mesh->ncells; i++) {
+    c[i] = sim->c->v[i] < PARAMS_GAS ? 0 : sim->c->v[i];
+  }
+  properties_density(mesh, density, c, sim->grid.closed, rho, alpha_f);
+  scratch_give(&sim->scratch, __func__);
   mesh_fill(mesh, 1, &rho, bc, false);
   light.rho = rho;
   light.alpha_f = alpha_f;

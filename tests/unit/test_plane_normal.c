@@ -244,6 +244,26 @@ START_TEST(plane_normal_keeps_the_symmetry_of_a_diagonal) {
 }
 END_TEST
 
+#if DIM == 3
+START_TEST(plane_normal_of_a_corner_feels_no_round_off) {
+  /* heights along x in the corner of two mirrors: both starts of the fit have
+   * the same largest component */
+  static const double height[] = {0.222189, 0.222189, 0.221413,
+                                  0.222189, 0.222189, 0.221413,
+                                  0.222367, 0.222367, 0.221557};
+  double c[PLANE_STENCIL], n[2][DIM];
+  for (int k = 0; k < 2; k++) {
+    for (int s = 0; s < PLANE_STENCIL; s++) {
+      c[s] = s % 3 == 0 ? 1. : s % 3 == 1 ? height[s / 3] : 0.;
+    }
+    c[1 + 9] += k ? 1e-15 : -1e-15;
+    plane_normal(c, NULL, n[k]);
+  }
+  ck_assert_double_le(angle_between(n[0], n[1]), 1e-13);
+}
+END_TEST
+#endif
+
 START_TEST(plane_normal_is_zero_without_a_direction) {
   double c[PLANE_STENCIL], n[DIM];
   for (int k = 0; k < 3; k++) {
@@ -265,6 +285,9 @@ Suite *plane_normal_suite(void) {
   tcase_add_test(normal, plane_normal_of_a_fragment_is_a_direction_or_zero);
   tcase_add_test(normal, plane_normal_treats_sides_and_axes_alike);
   tcase_add_test(normal, plane_normal_keeps_the_symmetry_of_a_diagonal);
+#if DIM == 3
+  tcase_add_test(normal, plane_normal_of_a_corner_feels_no_round_off);
+#endif
   tcase_add_test(normal, plane_normal_is_zero_without_a_direction);
   suite_add_tcase(suite, normal);
   return suite;
