@@ -28,17 +28,15 @@ static inline int strain_rows(const struct mesh *mesh) {
 static inline double strain_norm_squared(int n, double *const rows[STRAIN_ROWS],
                                          int d, int32_t f) {
   double sum = 0;
-  for (int e = 0; e < DIM; e++) {
-    if (e != d) sum += rows[e][f] * rows[e][f];
-  }
-  if (n == DIM) return sum + rows[d][f] * rows[d][f];
+  for (int e = 0; e < DIM; e++) sum += rows[e][f] * rows[e][f];
+  if (n == DIM) return sum;
   const double a = rows[d][f];
   if (DIM == 2) {
     const double t = rows[STRAIN_HOOP][f];
-    return sum + a * a + t * t + a * t;
+    return sum + t * t + a * t;
   }
   const double t = rows[STRAIN_ROWS - 2][f], tw = rows[STRAIN_ROWS - 1][f];
-  return sum + 0.75 * a * a + t * t + tw * tw;
+  return sum - 0.25 * a * a + t * t + tw * tw;
 }
 
 /* shear_f [nfaces] = sqrt(2 D:D) on our own faces; skin: of the mesh, or NULL;

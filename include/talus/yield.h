@@ -10,11 +10,11 @@
  *   q  = s^n + 2 r D*,  m = min(1, tau_y/|q|)
  *   rho u - dt div(2 (eta + m r) D(u)) = rho (u + dt g) + dt div(m s^n)
  *   s^{n+1} = P(s^n + 2 r D(u))
- * and with a new D* = D(u) once more, up to eight times, while the stress that
+ * and with a new D* = D(u) again, up to 32 times in all, while the stress that
  * this would exert at the same D differs from that of the solve,
  *   T = P(s^{n+1} + 2 r D) - m (s^n + 2 r D),
- *   mismatch = (sum |T| / sum tau_y) (sum |T|/(2 r) / sum |D|) > 0.02,
- * sums over wet faces by volume, and then until it is below 0.0005: where loads
+ *   mismatch = (sum |T| / sum tau_y) (sum |T|/(2 r) / sum |D|) > 0.0005,
+ * sums over wet faces by volume, the second factor being 1 at most: where loads
  * come or change at once. In a flow the second factor is small, as springs
  * hardly move there, and at rest the first. D is that of u before the
  * projection, as the solve leaves it. Where it has left out a jolt, that of u^n
@@ -25,11 +25,14 @@
  * It is the method of multipliers [bermudez_moreno_1981] with one step of
  * Picard's in it. Grains at rest have D = 0 whatever r is: r is no viscosity,
  * only the stiffness r/dt of a spring that holds them while s builds up. It is
- *   r = tau_y/(gamma_r + G),  gamma_r = 5e-4 max(sqrt(g/H), U/L),
- * H = max tau_y/(rho_1 g), U the largest speed, L the length of the domain, and
- * G the mean |D^n| around the face. Grains that flow past a face in which D
- * happens to vanish need no spring so stiff: alone among soft faces, it would
- * cost the solver many iterations.
+ *   r = tau_y/(gamma_r + G),  gamma_r = 5e-4 max(R/10, min(R, F)),
+ *   R = max(sqrt(g/H), U/L),  F = sum tau_y |D^n|^2 / sum tau_y |D^n|,
+ * H = max tau_y/(rho_1 g), U the largest speed, L the length of the domain, F
+ * the rate where grains flow, sums over wet faces by volume, and G the mean
+ * |D^n| around the face. Springs get stiffer as a flow dies, for a soft one
+ * rings before it holds. Grains that flow past a face in which D happens to
+ * vanish need no spring so stiff: alone among soft faces, it would cost the
+ * solver many iterations.
  *
  * D is that of a flow that keeps its volume, or its deviator where grains
  * change theirs. A model sets eta and tau_y of faces and what the struct below
@@ -63,7 +66,7 @@ struct yield {
   struct field *still; /* 1 in leaves at rest, 0 in those that move
                           (two_phase/still.h) */
   struct field *state; /* yield_state of snapshots, on demand */
-  double gamma_r;      /* 1/s */
+  double gamma_r;      /* 5e-4 R, 1/s */
   int misfits;         /* steps whose solves ended above the bad mismatch */
 };
 
@@ -77,6 +80,9 @@ double yield_least_rate(const struct params *params, double speed);
  * fastest speed of all ranks. Collective. */
 void yield_set_rate(struct yield *yield, const struct params *params,
                     double density, double speed);
+/* Let D and s be those of the velocity u that a run begins with, which is
+ * filled; after yield_set_rate. Collective. */
+void yield_start(const struct yield *yield, double *const u[DIM]);
 /* Set r [nfaces_all], the viscosity eta [nfaces_all] of a solve over dt and the
  * force div(m s^n) that it needs besides, force[e] [nleaves]. Collective. */
 void yield_linearise(const struct yield *yield, double dt, double *r,

@@ -13,8 +13,10 @@
 
 /* Stress within this part of the yield stress has reached it. */
 #define REACHED 1e-6
-/* gamma_r in units of the rate of the flow. */
+/* gamma_r in units of the rate of the flow, and the least part of it where
+ * grains hardly flow. */
 #define STIFF 5e-4
+#define HARDLY 0.1
 /* yield_least_rate in units of the rate of the flow. */
 #define LEAST_RATE 1e-6
 /* D*.D^n and |D*| are at least and at most this, in |D^n|^2 and |D^n|. */
@@ -123,8 +125,9 @@ KERNEL void extrapolate(const struct yield *yield, int n, int32_t f, double dt,
 KERNEL double project(int n, double q[STRAIN_ROWS], int d, double tau_y) {
   double *rows[STRAIN_ROWS];
   for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &q[k];
-  const double size = sqrt(strain_norm_squared(n, rows, d, 0));
-  const double m = size > tau_y ? tau_y / size : 1;
+  const double size = strain_norm_squared(n, rows, d, 0);
+  if (!(size > tau_y * tau_y)) return 1;
+  const double m = tau_y / sqrt(size);
   for (int k = 0; k < n; k++) q[k] *= m;
   return m;
 }
@@ -135,22 +138,32 @@ KERNEL double find_jolt(const struct yield *yield, int n,
                         double guess[STRAIN_ROWS], int d, int32_t f) {
   double *rows[STRAIN_ROWS];
   for (int k = 0; k < STRAIN_ROWS; k++) rows[k] = &guess[k];
-  const double known = 2 * sqrt(strain_norm_squared(n, rows, d, 0));
   const double shear = yield->shear->v[f];
-  return shear > 2 * known + yield->gamma_r / STIFF ? shear : 0;
+  const double excess = shear - yield->gamma_r / STIFF;
+  if (!(excess > 0)) return 0;
+  const double known = 2 * sqrt(strain_norm_squared(n, rows, d, 0));
+  return excess > 2 * known ? shear : 0;
+}
+
+static double face_volume(const struct mesh *mesh, int32_t f) {
+  const double h = mesh->face_h[f];
+  return DIM == 2 ? h * h : h * h * h;
 }
 
 /* Set rate [ncells] of leaves and ghosts to the mean |D| of their sides; face:
- * work [nfaces_all]. */
-static void find_local_rate(const struct yield *yield, double *face,
-                            double *rate) {
+ * work [nfaces_all]. Returns the mean |D| where grains flow, by the power that
+ * the yield stress takes. */
+static double find_local_rate(const struct yield *yield, double *face,
+                              double *rate) {
   const struct mesh *mesh = *yield->mesh;
   const int n = yield->nrows;
-  double *rows[STRAIN_ROWS];
+  double *rows[STRAIN_ROWS], power = 0, moment = 0;
   for (int k = 0; k < n; k++) rows[k] = yield->strain[k]->v;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       face[f] = sqrt(strain_norm_squared(n, rows, d, f));
+      const double part = face_volume(mesh, f) * yield->tau_y->v[f] * face[f];
+      power += part, moment += part * face[f];
     }
   }
   mesh_fill_faces(mesh, 1, &face);
@@ -158,18 +171,50 @@ static void find_local_rate(const struct yield *yield, double *face,
     rate[i] = mesh_mean(mesh, face, i);
   }
   mesh_fill_ghosts(mesh, 1, &rate);
+  power = mesh_sum(mesh, power), moment = mesh_sum(mesh, moment);
+  return power > 0 ? moment / power : 0;
 }
 
 /* Set r of each face. */
 static void set_stiffness(const struct yield *yield, double *r) {
   const struct mesh *mesh = *yield->mesh;
   double *rate = scratch_take_one(yield->scratch, FIELD_CELL, __func__);
-  find_local_rate(yield, r, rate);
+  const double flow = STIFF * find_local_rate(yield, r, rate);
+  const double most = yield->gamma_r;
+  const double gamma_r = max2(HARDLY * most, min2(most, flow));
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const int32_t *leaf = mesh->face_leaf[f];
     const double lower = rate[leaf[leaf[0] < 0]];
     const double upper = rate[leaf[leaf[1] >= 0]];
-    r[f] = yield->tau_y->v[f] / (yield->gamma_r + 0.5 * (lower + upper));
+    r[f] = yield->tau_y->v[f] / (gamma_r + 0.5 * (lower + upper));
+  }
+  scratch_give(yield->scratch, __func__);
+}
+
+/* Set rows to D, or its deviator, of the velocity u. */
+static void find_strain(const struct yield *yield, double *const u[DIM],
+                        double *const rows[STRAIN_ROWS]) {
+  const struct skin *skin = yield->skin ? *yield->skin : NULL;
+  if (yield->compressible)
+    strain_find_deviator(*yield->mesh, skin, u, rows);
+  else
+    strain_find(*yield->mesh, skin, u, rows);
+}
+
+void yield_start(const struct yield *yield, double *const u[DIM]) {
+  const struct mesh *mesh = *yield->mesh;
+  const int n = yield->nrows;
+  double *strain[STRAIN_ROWS], q[STRAIN_ROWS];
+  double *r = scratch_take_one(yield->scratch, FIELD_FACE, __func__);
+  for (int k = 0; k < n; k++) strain[k] = yield->strain[k]->v;
+  find_strain(yield, u, strain);
+  set_stiffness(yield, r);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      for (int k = 0; k < n; k++) q[k] = 2 * r[f] * strain[k][f];
+      project(n, q, d, yield->tau_y->v[f]);
+      for (int k = 0; k < n; k++) yield->s[k]->v[f] = q[k];
+    }
   }
   scratch_give(yield->scratch, __func__);
 }
@@ -178,17 +223,19 @@ static void set_stiffness(const struct yield *yield, double *r) {
 KERNEL void linearise_face(const struct yield *yield, int n, int d, int32_t f,
                            double dt, const double *r, double *eta,
                            double *const stress[]) {
+  const int nrows = DIM == 2 ? n : DIM;
+  const double tau_y = yield->tau_y->v[f];
   double q[STRAIN_ROWS];
+  eta[f] = yield->eta->v[f];
+  for (int e = 0; e < nrows; e++) stress[e][f] = 0;
+  if (r[f] == 0) return;
   extrapolate(yield, n, f, dt, q);
   const double jolt = find_jolt(yield, n, q, d, f);
   for (int k = 0; k < n; k++) q[k] = yield->s[k]->v[f] + 2 * r[f] * q[k];
-  const double tau_y = yield->tau_y->v[f];
   double m = project(n, q, d, tau_y);
-  if (jolt > 0 && r[f] > 0) m = min2(m, tau_y / (r[f] * jolt));
-  eta[f] = yield->eta->v[f] + m * r[f];
-  for (int e = 0; e < (DIM == 2 ? n : DIM); e++) {
-    stress[e][f] = m * yield->s[e]->v[f];
-  }
+  if (jolt > 0) m = min2(m, tau_y / (r[f] * jolt));
+  eta[f] += m * r[f];
+  for (int e = 0; e < nrows; e++) stress[e][f] = m * yield->s[e]->v[f];
 }
 
 void yield_linearise(const struct yield *yield, double dt, double *r,
@@ -244,16 +291,14 @@ KERNEL void advance_face(const struct yield *yield, int n, int d, int32_t f,
   const double tau_y = yield->tau_y->v[f];
   double now[STRAIN_ROWS], q[STRAIN_ROWS], lack[STRAIN_ROWS];
   for (int k = 0; k < n; k++) {
-    now[k] = strain[k];
+    yield->strain[k]->v[f] = now[k] = strain[k];
     q[k] = yield->s[k]->v[f] + 2 * r * now[k];
     lack[k] = -m * q[k];
   }
   project(n, q, d, tau_y);
-  for (int k = 0; k < n; k++) {
-    yield->strain[k]->v[f] = now[k], yield->s[k]->v[f] = q[k];
-    q[k] += 2 * r * now[k];
-  }
+  for (int k = 0; k < n; k++) yield->s[k]->v[f] = q[k];
   if (r == 0) return;
+  for (int k = 0; k < n; k++) q[k] += 2 * r * now[k];
   project(n, q, d, tau_y);
   for (int k = 0; k < n; k++) lack[k] += q[k];
   const double size = volume * norm(n, lack, d);
@@ -270,7 +315,7 @@ KERNEL void advance_faces(const struct yield *yield, int n, int d, double dt,
                           double sum[4]) {
   const struct mesh *mesh = *yield->mesh;
   for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-    const double h = mesh->face_h[f], volume = DIM == 2 ? h * h : h * h * h;
+    const double volume = face_volume(mesh, f);
     const double m = r[f] > 0 ? (eta[f] - yield->eta->v[f]) / r[f] : 0;
     double strain[STRAIN_ROWS];
     for (int k = 0; k < n; k++) strain[k] = rows[k][f];
@@ -285,11 +330,7 @@ double yield_advance(const struct yield *yield, double dt, const double *r,
   const int n = yield->nrows;
   double *rows[STRAIN_ROWS], sum[4] = {0};
   scratch_take(yield->scratch, FIELD_FACE, __func__, n, rows);
-  const struct skin *skin = yield->skin ? *yield->skin : NULL;
-  if (yield->compressible)
-    strain_find_deviator(mesh, skin, u, rows);
-  else
-    strain_find(mesh, skin, u, rows);
+  find_strain(yield, u, rows);
   for (int d = 0; d < DIM; d++) {
     if (n == DIM) {
       advance_faces(yield, DIM, d, dt, r, eta, rows, again, sum);
@@ -299,8 +340,8 @@ double yield_advance(const struct yield *yield, double dt, const double *r,
   }
   scratch_give(yield->scratch, __func__);
   for (int k = 0; k < 4; k++) sum[k] = mesh_sum(mesh, sum[k]);
-  const double most = sum[1] * sum[3];
-  return most > 0 ? sum[0] * sum[2] / most : 0;
+  const double part = sum[0] / max2(sum[1], 1e-300);
+  return sum[2] < sum[3] ? part * sum[2] / sum[3] : part;
 }
 
 void yield_say_misfit(struct yield *yield, long long step, int solves,

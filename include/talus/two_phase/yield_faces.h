@@ -8,8 +8,11 @@
  * its line (properties.h); so it is on a wet face with gas on its
  * line, beyond which a leaf moves with the gas. Grains touch what a film
  * of gas keeps them from: in a leaf with a part c' < 0.1 of gas a is at least 1
- * - 10 c' (of both leaves). The face that carries a cut leaf bears at least the
- * weight of its grains, p_f >= c rho_1 |g_d| h/a.
+ * - 10 c' (of both leaves), and in the direction of gravity a is at least the
+ * lesser c of both leaves, whose planes may miss each other: grains that
+ * nothing holds in a leaf would fall for ever on those below. The face that
+ * carries a cut leaf bears at least the weight of its grains, p_f >= c rho_1
+ * |g_d| h/a.
  *
  * u_f, which carries c, is not that of the projection: it would leave dt (a_f -
  * mean g_c), which does not vanish at rest. It is the solenoidal part of the
