@@ -14,6 +14,14 @@
 /* Leaves with more grains than this are asked for their speed. */
 #define HOLDS_GRAINS 0.01
 
+/* Return that part, or under a light gas that in which grains weigh as much as
+ * the gas: a leaf with fewer than HOLDS_GRAINS fell on a toe for ever. */
+static double least_grains(const struct two_phase *sim) {
+  const struct params *params = sim->params;
+  if (params->single_phase) return HOLDS_GRAINS;
+  return min2(HOLDS_GRAINS, params->gas.density / params->grains.density);
+}
+
 void still_find(struct two_phase *sim, double dt) {
   double *w = sim->yield.still->v;
   const struct mesh *mesh = sim->grid.mesh;
@@ -21,11 +29,12 @@ void still_find(struct two_phase *sim, double dt) {
   for (int d = 0; d < DIM; d++) {
     g2 += sim->params->gravity[d] * sim->params->gravity[d];
   }
+  const double least = least_grains(sim);
   const double slow = max2(SLOW * dt * sqrt(g2), 1e-300);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double u2 = 0;
     w[i] = 0;
-    if (!(sim->c->v[i] > HOLDS_GRAINS)) continue;
+    if (!(sim->c->v[i] > least)) continue;
     for (int e = 0; e < DIM; e++) {
       u2 += sim->u_old[e]->v[i] * sim->u_old[e]->v[i];
     }
@@ -34,14 +43,15 @@ void still_find(struct two_phase *sim, double dt) {
   mesh_fill_ghosts(mesh, 1, &w);
 }
 
-/* Return w of a face: the least of the leaves that hold grains, 0 without. */
-static double face_weight(const struct two_phase *sim, int32_t f) {
+/* Return w of a face: the least of the leaves with more than `few` grains, 0
+ * without. */
+static double face_weight(const struct two_phase *sim, double few, int32_t f) {
   double least = 1;
   bool grains = false;
   for (int side = 0; side < 2; side++) {
     const int32_t leaf = sim->grid.mesh->face_leaf[f][side];
     if (leaf < 0) return 0;
-    if (!(sim->c->v[leaf] > HOLDS_GRAINS)) continue;
+    if (!(sim->c->v[leaf] > few)) continue;
     least = min2(least, sim->yield.still->v[leaf]);
     grains = true;
   }
@@ -115,12 +125,13 @@ void still_face_velocity(struct two_phase *sim,
                          const struct projection *projection, const double *rho,
                          double dt, double *u_f) {
   const struct mesh *mesh = sim->grid.mesh;
+  const double few = least_grains(sim);
   double *mean = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   find_mean(sim, projection, rho, dt, mean);
   poisson_flux(mesh, projection->alpha_f, sim->p->v, projection->flux);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const double slowly = mean[f] + dt * projection->flux[f];
-    u_f[f] += face_weight(sim, f) * (slowly - u_f[f]);
+    u_f[f] += face_weight(sim, few, f) * (slowly - u_f[f]);
   }
   mesh_fill_faces(mesh, 1, &u_f);
   scratch_give(&sim->scratch, __func__);

@@ -15,7 +15,7 @@
  *   u_f = (1 - w) [m(u* - dt g^n) + dt (a^n + alpha_f grad p^n)]
  *             + w [m_c(u*) + dt alpha_f grad p^n],
  * m_c the mean by mass with a gas that weighs nothing, and of leaves with
- * grains beside the face w is the least
+ * grains beside the face, c > min(0.01, rho_gas/rho_grains), w is the least
  *   w = max(0, 1 - |u^n|/(0.1 dt |gravity|)).
  * Grains that fall freely pass that speed in a tenth of a step. Of grains that
  * move it would leave odd and even pressures apart, which u does not feel.
