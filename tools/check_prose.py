@@ -23,8 +23,10 @@ NOT_FIRST = {"Of", "What", "Whether", "Which", "The", "A", "An", "How", "So",
 # Files of other programs.
 FOREIGN = {"lstrlib.c", "granular_sandglass.c"}
 
-# Words that no comment begins with, over a function or not.
-NEVER_FIRST = re.compile(r"/\*\s+\*?\s*(Of|What|Whether|Else|So|The same)\b")
+# Words that no comment begins with, over a function or not, and none of its
+# paragraphs but those that go on with "Else" or "So".
+NEVER_FIRST = re.compile(r"/\*\s+\*?\s*(Of|What|Whether|Else|So|The same)\b"
+                         r"|\*[ ]*\n[ ]*\*[ ]*(Of|What|Whether|The same)\b")
 COMMENT = re.compile(r"/\*.*?\*/", re.S)
 # A comment at the begin of a line, then the head of a function.
 OVER_FUNCTION = re.compile(r"^/\*(?P<text>(?:(?!\*/).)*)\*/ *\n"
@@ -82,10 +84,10 @@ class Checker(checker.Checker):
         for comment in COMMENT.finditer(text):
             self.check_names(path, text, *comment.span())
             self.check_papers(path, text, *comment.span())
-            first = NEVER_FIRST.match(comment.group())
-            if first:
-                self.complain_at(path, text, comment.start(),
-                                 f"begin otherwise than with {first.group(1)}")
+            for first in NEVER_FIRST.finditer(comment.group()):
+                self.complain_at(
+                    path, text, comment.start() + first.start(),
+                    f"begin otherwise than with {first.group(1) or first.group(2)}")
         for match in OVER_FUNCTION.finditer(text):
             word = match.group("text").lstrip("\n *").split(None, 1)[:1]
             if word and word[0].strip(",:;") in NOT_FIRST:

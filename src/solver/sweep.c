@@ -2,7 +2,7 @@
 /* Relaxation of the nodes of a colour, and residuals. See hierarchy.h for the
  * formulas.
  *
- * What a node is pulled to by its neighbours is written once for `nparts`
+ * The pull of the neighbours on a node is written once for `nparts`
  * components, with and without what div u adds to the stress (bulk.c), and
  * compiled for 1, DIM and both, and for each child number: siblings
  * are then a fixed number of slots away, which leaves half of the neighbours to

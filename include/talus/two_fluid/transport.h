@@ -9,11 +9,12 @@
  * beside leaves that have none, have no slope. q_f of the fluid is that of
  * advection.h, with u between u^n and what forces have made of it.
  *
- * What the fluid carries pushes itself along, and pressure, which is found
- * before, has to hold against it. So what it will gain is foreseen with the
- * last fluxes and is in u_f until pressure is found; else u_f would end a step
- * with a part dt grad(u^2/2) that p of the next step removes. It is taken out
- * again, so that momentum is kept.
+ * Foresight. The fluid pushes itself along by the momentum it carries, and the
+ * pressure, which is found before that, has to hold against it. So
+ * two_fluid_foresee adds the gain of u_f, by the last fluxes, before pressure
+ * is found, and two_fluid_transport takes it out again, so that momentum is
+ * kept. Else u_f would end a step with a part dt grad(u^2/2) that p of the next
+ * step removes.
  */
 #ifndef TALUS_TWO_FLUID_TRANSPORT_H
 #define TALUS_TWO_FLUID_TRANSPORT_H
