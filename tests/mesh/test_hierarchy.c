@@ -126,8 +126,8 @@ END_TEST
 
 /* On a brick of trees that are not divided a cycle is the solve of the coarsest
  * level alone, which leaves 1e-3 of the residual. Here a periodic brick, on
- * which r - (e - lap e) is a sum over neighbours. Loop
- * 1: without mass nothing solves for a constant, which is left alone. */
+ * which r - (e - lap e) is a sum over neighbours. Loop 1: without mass nothing
+ * solves for a constant, which is left alone. */
 START_TEST(coarsest_level_leaves_a_thousandth) {
   enum { TREES = DIM == 2 ? 16 : 8 };
   struct forest *forest = grid_new(MPI_COMM_WORLD, TREES, true, 0, 0);
@@ -206,7 +206,7 @@ START_TEST(ranks_without_leaves) {
   double value = 0;
   coefficients_set(h, 1, alpha_f, 1, &mass, bcs);
   cycle_run(h, 1, &r, &value);
-  const double found = mesh_sum(mesh, mesh->nleaves > 0 ? (double)value : 0);
+  const double found = mesh_sum(mesh, mesh->nleaves > 0 ? value : 0);
   mem_free(alpha_f);
   hierarchy_destroy(h);
   mesh_destroy(mesh);

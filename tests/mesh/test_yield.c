@@ -447,6 +447,19 @@ START_TEST(grains_touch_what_a_film_keeps_them_from) {
 }
 END_TEST
 
+/* Linearise a step of 0.1 with gamma_r = 1e-3; the caller frees r and eta
+ * [nfaces_all]. */
+static void linearise(struct two_phase *sim, double **r, double **eta) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *force[DIM];
+  *r = MEM_NEW(double, mesh->nfaces_all);
+  *eta = MEM_NEW(double, mesh->nfaces_all);
+  for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, mesh->ncells);
+  sim->yield.gamma_r = 1e-3;
+  yield_linearise(&sim->yield, 0.1, *r, *eta, force);
+  for (int d = 0; d < DIM; d++) mem_free(force[d]);
+}
+
 /* D = 0 of before the projection leaves out a shear rate of 1e3 that it has
  * brought: the solve then takes the viscosity of that, tau_y/1e3. */
 START_TEST(a_jolt_lets_grains_yield) {
@@ -457,22 +470,18 @@ START_TEST(a_jolt_lets_grains_yield) {
   rheology_set(&p.grains.rheology, "eta_0", 1);
   struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
   const struct mesh *mesh = sim->grid.mesh;
-  double *r = MEM_NEW(double, mesh->nfaces_all);
-  double *eta = MEM_NEW(double, mesh->nfaces_all), *force[DIM];
-  for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, mesh->ncells);
+  double *r, *eta;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     sim->eta_f->v[f] = 1;
     sim->yield.tau_y->v[f] = 1;
     sim->yield.shear->v[f] = _i ? 1e3 : 1;
   }
-  sim->yield.gamma_r = 1e-3;
-  yield_linearise(&sim->yield, 0.1, r, eta, force);
+  linearise(sim, &r, &eta);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const double want = 1 + (_i ? 1e-3 : r[f]);
     worst = larger(worst, fabs(eta[f] / want - 1));
   }
   worst = mesh_max(mesh, worst);
-  for (int d = 0; d < DIM; d++) mem_free(force[d]);
   mem_free(r), mem_free(eta);
   two_phase_destroy(sim);
   ck_assert_double_lt(worst, 1e-12);
@@ -488,23 +497,19 @@ START_TEST(springs_stiffen_as_a_flow_dies) {
   p.grains.rheology = exact_closure("bingham");
   struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
   const struct mesh *mesh = sim->grid.mesh;
-  double *r = MEM_NEW(double, mesh->nfaces_all);
-  double *eta = MEM_NEW(double, mesh->nfaces_all), *force[DIM];
-  for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, mesh->ncells);
+  double *r, *eta;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       sim->yield.tau_y->v[f] = 3;
       sim->yield.strain[(d + 1) % DIM]->v[f] = rate[_i];
     }
   }
-  sim->yield.gamma_r = 1e-3;
-  yield_linearise(&sim->yield, 0.1, r, eta, force);
+  linearise(sim, &r, &eta);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const double want = 3 / (gamma_r[_i] + rate[_i]);
     worst = larger(worst, fabs(r[f] / want - 1));
   }
   worst = mesh_max(mesh, worst);
-  for (int d = 0; d < DIM; d++) mem_free(force[d]);
   mem_free(r), mem_free(eta);
   two_phase_destroy(sim);
   ck_assert_double_lt(worst, 1e-12);
@@ -523,16 +528,13 @@ START_TEST(a_still_face_in_a_flow_is_as_soft_as_the_others) {
   rheology_set(&p.grains.rheology, "eta_0", 1);
   struct two_phase *sim = flat_grains(&p);
   const struct mesh *mesh = sim->grid.mesh;
-  double *r = MEM_NEW(double, mesh->nfaces_all);
-  double *eta = MEM_NEW(double, mesh->nfaces_all), *force[DIM];
-  for (int d = 0; d < DIM; d++) force[d] = MEM_NEW(double, mesh->ncells);
+  double *r, *eta;
   for (int d = 0; d < DIM; d++) {
     const int other = (d + 1) % DIM;
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++)
       sim->yield.strain[other]->v[f] = f == 0 ? 0 : 2;
   }
-  sim->yield.gamma_r = 1e-3;
-  yield_linearise(&sim->yield, 0.1, r, eta, force);
+  linearise(sim, &r, &eta);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     const double scaled = r[f] / sim->yield.tau_y->v[f];
     if (sim->yield.tau_y->v[f] == 0) continue;
@@ -541,7 +543,6 @@ START_TEST(a_still_face_in_a_flow_is_as_soft_as_the_others) {
   }
   stiffest = mesh_max(mesh, stiffest);
   softest = -mesh_max(mesh, -softest);
-  for (int d = 0; d < DIM; d++) mem_free(force[d]);
   mem_free(r), mem_free(eta);
   two_phase_destroy(sim);
   ck_assert_double_eq_tol(softest, 1 / 2.001, 1e-12);
