@@ -9,6 +9,7 @@
 #ifndef TALUS_PARAMS_H
 #define TALUS_PARAMS_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -204,6 +205,13 @@ static inline bool params_bring_grains(const struct params *params) {
     }
   }
   return false;
+}
+
+/* Return |gravity|. */
+static inline double params_gravity(const struct params *params) {
+  double g2 = 0;
+  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
+  return sqrt(g2);
 }
 
 #endif

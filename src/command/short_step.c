@@ -17,9 +17,9 @@ static const double SHORT = 1e-9; /* of the times of the case */
 static const double GROWS = 1.1;
 
 double short_step_floor(const struct params *params) {
-  double g2 = 0, time = params->stop;
-  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
-  if (g2 > 0) time = min2(time, sqrt(params->size / sqrt(g2)));
+  const double g = params_gravity(params);
+  double time = params->stop;
+  if (g > 0) time = min2(time, sqrt(params->size / g));
   return max2(SHORT * time, 0.5 * DBL_EPSILON * params->stop);
 }
 

@@ -67,17 +67,11 @@ static double find_length(const struct params *params) {
   return length;
 }
 
-static double gravity_of(const struct params *params) {
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
-  return sqrt(g2);
-}
-
 /* Give the larger of the rates of fall, sqrt(g/H), and of flow; without either
  * that of the run. */
 static double larger_rate(const struct params *params, double height,
                           double flow) {
-  const double rate = max2(sqrt(gravity_of(params) / height), flow);
+  const double rate = max2(sqrt(params_gravity(params) / height), flow);
   return rate > 0 ? rate : 1 / params->stop;
 }
 
@@ -89,7 +83,7 @@ double yield_least_rate(const struct params *params, double speed) {
 void yield_set_rate(struct yield *yield, const struct params *params,
                     double density, double speed) {
   const struct mesh *mesh = *yield->mesh;
-  const double weight = density * gravity_of(params);
+  const double weight = density * params_gravity(params);
   const double length = find_length(params);
   double most = 0;
   for (int32_t f = 0; f < mesh->nfaces; f++) {

@@ -36,10 +36,8 @@ static double speed_squared(const struct four_state *sim, int32_t i) {
 
 /* Return the square of the speed below which grains are slow, m^2/s^2. */
 static double slow_squared(const struct four_state *sim) {
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++)
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  return SLOW * SLOW * sqrt(g2) * sim->closure.param[LEE_HUANG_D];
+  return SLOW * SLOW * params_gravity(sim->params) *
+         sim->closure.param[LEE_HUANG_D];
 }
 
 static void add_leaf(const struct four_state *sim, int32_t i, double slow2,

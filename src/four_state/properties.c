@@ -105,10 +105,8 @@ static void fill_positive(struct four_state *sim) {
  * the weight of a leaf. */
 static void find_touches(struct four_state *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++)
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  const double weight = sim->closure.param[LEE_HUANG_RHO_D] * sqrt(g2);
+  const double weight =
+      sim->closure.param[LEE_HUANG_RHO_D] * params_gravity(sim->params);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double half = 0.5 * weight * mesh->h[i] * sim->nu->v[i];
     double *part = &sim->touches->v[i];

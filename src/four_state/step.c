@@ -247,11 +247,9 @@ static bool is_driven(const struct four_state *sim) {
  * no energy stands behind. */
 static double burst(const struct four_state *sim, double dt,
                     const struct four_state_store *before) {
-  double g2 = 0;
   if (is_driven(sim)) return 0;
-  for (int d = 0; d < DIM; d++)
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  const double fall = sqrt(0.5 * before->mass * g2) * dt;
+  const double fall =
+      sqrt(0.5 * before->mass) * params_gravity(sim->params) * dt;
   const double speed = sqrt(before->kinetic) + fall;
   const double most = BURST * (speed * speed + before->other) + 1e-300;
   return four_state_store(sim).kinetic / most;

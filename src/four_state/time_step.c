@@ -28,9 +28,9 @@ static double flow_rate(const struct four_state *sim) {
 double four_state_time_step(const struct four_state *sim, double dt_max) {
   const struct params *params = sim->params;
   const double h = params->size / exp2(sim->grid.mesh->level_finest);
-  double g2 = 0, dt = min2(dt_max, params->dt_max);
-  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
-  if (g2 > 0) dt = min2(dt, DT_ACCELERATION * sqrt(h / sqrt(g2)));
+  const double g = params_gravity(params);
+  double dt = min2(dt_max, params->dt_max);
+  if (g > 0) dt = min2(dt, DT_ACCELERATION * sqrt(h / g));
   const double rate = flow_rate(sim);
   if (rate > 0) dt = min2(dt, params->cfl / rate);
   dt = sim->model.dt > 0 ? min2(dt, DT_GROWTH * sim->model.dt) : DT_FIRST * dt;

@@ -181,10 +181,7 @@ void four_state_predict(struct four_state *sim, double dt, double *a_f,
  * they move by SLOW of what gravity gives in dt. */
 static void find_still(struct four_state *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++)
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  const double slow = max2(SLOW * dt * sqrt(g2), 1e-300);
+  const double slow = max2(SLOW * dt * params_gravity(sim->params), 1e-300);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double u2 = 0;
     for (int e = 0; e < DIM; e++)

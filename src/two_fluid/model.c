@@ -39,10 +39,8 @@ static const char *regime(double St, double r) {
 
 static void describe(const struct params *params, size_t size, char *text) {
   struct two_fluid_closure c;
-  double g2 = 0;
   two_fluid_closures(params, &c);
-  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
-  const double St = two_fluid_stokes_number(&c, sqrt(g2));
+  const double St = two_fluid_stokes_number(&c, params_gravity(params));
   const double r = two_fluid_density_ratio(&c);
   snprintf(text, size, "St = %.4g, r = %.4g: grains fall in the regime \"%s\"",
            St, r, regime(St, r));

@@ -151,10 +151,7 @@ static void set_means(struct two_fluid *sim) {
  * or where they carry nothing. */
 static void find_still(struct two_fluid *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++)
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  const double slow = max2(SLOW * dt * sqrt(g2), 1e-300);
+  const double slow = max2(SLOW * dt * params_gravity(sim->params), 1e-300);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double u2 = 0, slip2 = 0;
     for (int e = 0; e < DIM; e++) {

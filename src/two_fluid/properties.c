@@ -246,11 +246,10 @@ static void fill_pressure(struct two_fluid *sim) {
  * is not continued by the grains of a bed. */
 static void find_skin(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *m = sim->touches->v, g2 = 0;
-  for (int d = 0; d < DIM; d++)
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  const double weight = sqrt(g2) * (two_fluid_density(sim, TWO_FLUID_S) -
-                                    two_fluid_density(sim, TWO_FLUID_F));
+  double *m = sim->touches->v;
+  const double weight =
+      params_gravity(sim->params) * (two_fluid_density(sim, TWO_FLUID_S) -
+                                     two_fluid_density(sim, TWO_FLUID_F));
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double half = 0.5 * weight * mesh->h[i] * sim->alpha->v[i];
     const double c = sim->rest->v[i] > 0 ? sim->c->v[i] : 1;

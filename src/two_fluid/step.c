@@ -160,11 +160,9 @@ static struct energy energy_of(const struct two_fluid *sim) {
  * p_s may have made of what there was before. */
 static double burst(const struct two_fluid *sim, double dt,
                     const struct energy *before) {
-  double g2 = 0;
   if (two_fluid_is_driven(sim)) return 0;
-  for (int d = 0; d < DIM; d++)
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  const double fall = sqrt(0.5 * before->mass * g2) * dt;
+  const double fall =
+      sqrt(0.5 * before->mass) * params_gravity(sim->params) * dt;
   const double speed = sqrt(before->kinetic) + fall;
   const double most = BURST * (speed * speed + before->stored) + 1e-300;
   return energy_of(sim).kinetic / most;

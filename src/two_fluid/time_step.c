@@ -86,9 +86,7 @@ static double wave_bound(const struct two_fluid *sim) {
   const double h = params->size / exp2(sim->grid.mesh->level_finest);
   const double buoyancy =
       two_fluid_density(sim, TWO_FLUID_F) / two_fluid_density(sim, TWO_FLUID_S);
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
-  const double g = (1 - buoyancy) * sqrt(g2);
+  const double g = (1 - buoyancy) * params_gravity(params);
   const double part = has_dense(sim) ? WAVE_DENSE : WAVE;
   return g > 0 ? part * sqrt(h / g) : HUGE_VAL;
 }

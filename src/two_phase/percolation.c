@@ -350,14 +350,12 @@ void percolation_advance(struct two_phase *sim, double dt) {
 
 double percolation_permeability(const struct two_phase *sim) {
   const double shear_rate = 1, pressure = 0;
-  double eta, g2 = 0;
+  const double g = params_gravity(sim->params);
+  double eta;
   if (!(sim->percolation.volume > 0)) return 0;
-  for (int d = 0; d < DIM; d++) {
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  }
-  if (g2 == 0) return 0;
+  if (g == 0) return 0;
   rheology_eval(&sim->params->gas.rheology, sim->model.time, 1, &shear_rate,
                 &pressure, &eta);
   return eta * sim->percolation.flow / sim->percolation.volume /
-         (sim->params->grains.density * sqrt(g2));
+         (sim->params->grains.density * g);
 }

@@ -65,12 +65,9 @@ static void set_rest(struct two_phase *sim, bool rests) {
 }
 
 void rest_note(struct two_phase *sim) {
-  double g2 = 0, size, speed;
+  double size, speed;
   if (!sim->exact) return;
-  for (int d = 0; d < DIM; d++) {
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  }
-  const double g = sqrt(g2), time = sim->model.time;
+  const double g = params_gravity(sim->params), time = sim->model.time;
   find_motion(sim, &size, &speed);
   if (!(speed < STILL * sqrt(g * size))) sim->arrest.moved = time;
   set_rest(sim,

@@ -34,9 +34,9 @@ static double speed_of_case(const struct two_phase *sim) {
 double step_floor(const struct two_phase *sim) {
   const struct params *params = sim->params;
   const double speed = speed_of_case(sim);
-  double g2 = 0, time = params->stop;
-  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
-  if (g2 > 0) time = min2(time, sqrt(params->size / sqrt(g2)));
+  const double g = params_gravity(params);
+  double time = params->stop;
+  if (g > 0) time = min2(time, sqrt(params->size / g));
   if (speed > 0) time = min2(time, params->size / speed);
   return max2(SHORT * time, 0.5 * DBL_EPSILON * params->stop);
 }

@@ -25,12 +25,8 @@ static double least_grains(const struct two_phase *sim) {
 void still_find(struct two_phase *sim, double dt) {
   double *w = sim->yield.still->v;
   const struct mesh *mesh = sim->grid.mesh;
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++) {
-    g2 += sim->params->gravity[d] * sim->params->gravity[d];
-  }
   const double least = least_grains(sim);
-  const double slow = max2(SLOW * dt * sqrt(g2), 1e-300);
+  const double slow = max2(SLOW * dt * params_gravity(sim->params), 1e-300);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double u2 = 0;
     w[i] = 0;

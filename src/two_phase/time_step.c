@@ -79,10 +79,9 @@ static double acceleration_bound(const struct two_phase *sim) {
 
 /* Bound dt by sqrt(h/|g|) of the finest leaves, where there is a surface. */
 static double wave_bound(const struct params *params) {
-  double g2 = 0;
-  for (int d = 0; d < DIM; d++) g2 += params->gravity[d] * params->gravity[d];
-  if (params->single_phase || g2 == 0) return HUGE_VAL;
-  return sqrt(params->size / exp2(params->level_max) / sqrt(g2));
+  const double g = params_gravity(params);
+  if (params->single_phase || g == 0) return HUGE_VAL;
+  return sqrt(params->size / exp2(params->level_max) / g);
 }
 
 double time_step_choose(const struct two_phase *sim, double dt_max,
