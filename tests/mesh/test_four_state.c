@@ -69,7 +69,7 @@ static double slope(void *context, const double x[3]) {
  * leaves of the surface that are not full included: the fastest grains have
  * 0.035 mm/s, in rings (from 2 on) 0.07 and in 3D 0.05 mm/s; with an exact
  * yield (odd) 0.17 and in rings 0.74 mm/s. With tangential differences that
- * read grains which do not touch it is more than 5 mm/s. */
+ * read grains which do not touch they have 36 mm/s. */
 START_TEST(a_heap_rests) {
   struct four_state_keys keys = four_state_defaults();
   struct four_state_measures m;
