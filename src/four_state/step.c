@@ -71,9 +71,7 @@ enum { RETRIES = 20, MOST_NEWTON = 30 };
 #define LEAST_SLOPE 1e-12
 /* Leaves with less have no velocity and no T of their own. */
 #define LEAST_NU 1e-6
-/* A stalled viscous solve passes within STALL_SLACK times its tolerance, or
- * below STALL_FLOOR of the speed that the tolerance refers to. */
-#define STALL_SLACK 10
+/* Part of the largest speed that a stalled viscous solve may leave. */
 #define STALL_FLOOR 1e-10
 
 static double find_pressure(const void *context, int32_t i, double nu,
@@ -225,13 +223,6 @@ static double advance_state(struct four_state *sim, double dt) {
   return given;
 }
 
-static bool is_solved(const struct four_state *sim) {
-  const double allowed =
-      max2(STALL_SLACK * sim->params->tolerance_viscous, STALL_FLOOR);
-  return sim->viscous.status == SOLVE_CONVERGED ||
-         sim->viscous.residual_after <= allowed * sim->scale;
-}
-
 /* Do walls or a given flow drive the grains? */
 static bool is_driven(const struct four_state *sim) {
   bool driven = false;
@@ -268,7 +259,8 @@ static bool has_failed(const struct four_state *sim, double given,
         "step %lld: pressure and mass do not fit by %.3g after %d Newton "
         "iterations",
         step, sim->pressure.residual, sim->pressure.newton);
-  } else if (!is_solved(sim)) {
+  } else if (!solve_passes(&sim->viscous, tolerance,
+                           STALL_FLOOR * sim->scale)) {
     log_info(
         "step %lld: viscous solve stalled after %d iterations, residual "
         "%g, tolerance %g",

@@ -63,9 +63,7 @@ enum { RETRIES = 8 };
  * be replaced MOST_RATE times. */
 #define MOST_GIVEN 0.95
 #define MOST_RATE 1.5
-/* A stalled solve passes within STALL_SLACK times its tolerance, or below
- * STALL_FLOOR, m/s. */
-#define STALL_SLACK 10
+/* A residual that a stalled solve may leave, m/s. */
 #define STALL_FLOOR 1e-12
 /* Both phases may have this times the kinetic energy that is accounted for:
  * what grains are pressed by may do work over this strain. */
@@ -127,11 +125,6 @@ static double advance_state(struct two_fluid *sim, double dt) {
   return given;
 }
 
-static bool is_solved(const struct solve_stats *stats, double tolerance) {
-  return stats->status == SOLVE_CONVERGED ||
-         stats->residual_after <= max2(STALL_SLACK * tolerance, STALL_FLOOR);
-}
-
 /* Holds what a step begins with, J/m (3D: J). */
 struct energy {
   double mass;    /* of both, kg/m */
@@ -187,13 +180,13 @@ static bool has_failed(const struct two_fluid *sim, double dt, double given,
         step, sim->pressure.residual, sim->pressure.newton);
     return true;
   }
-  if (!is_solved(projection, sim->params->tolerance_pressure)) {
+  if (!solve_passes(projection, sim->params->tolerance_pressure, STALL_FLOOR)) {
     log_info("step %lld: projection stalled after %d iterations, residual %g",
              step, projection->iterations, projection->residual_after);
     return true;
   }
   for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
-    if (is_solved(&sim->viscous[k], tolerance)) continue;
+    if (solve_passes(&sim->viscous[k], tolerance, STALL_FLOOR)) continue;
     log_info(
         "step %lld: viscous solve of the %s stalled after %d iterations, "
         "residual %g, tolerance %g",

@@ -53,14 +53,6 @@ static double speed_scale(const struct two_fluid *sim, double dt) {
   return mesh_max(sim->grid.mesh, most);
 }
 
-/* Add the solves of a step up: all iterations, the worst result. */
-static void add_solve(struct solve_stats *sum, const struct solve_stats *next) {
-  const int iterations = sum->iterations + next->iterations;
-  if (sum->iterations == 0 || next->residual_after > sum->residual_after)
-    *sum = *next;
-  sum->iterations = iterations;
-}
-
 /* Return the skin that the velocity of a phase has. */
 static const struct skin *skin_of(const struct two_fluid *sim, int phase) {
   return phase == TWO_FLUID_S ? sim->skin : NULL;
@@ -77,10 +69,11 @@ static void solve(struct two_fluid *sim, int phase, double dt,
                                       .skin = skin_of(sim, phase)};
   field_arrays(sim->u[phase], u);
   for (int e = 0; e < DIM; e++) bc[e] = sim->u[phase][e]->bc;
-  const struct solve_stats stats =
+  const struct solve_stats before = sim->viscous[phase];
+  sim->viscous[phase] =
       viscous_solve(sim->grid.mesh, sim->grid.hierarchy, mass, &viscosity, dt,
                     rhs, bc, tolerance, sim->params->max_iterations, u);
-  add_solve(&sim->viscous[phase], &stats);
+  solve_add(&sim->viscous[phase], &before);
 }
 
 /* Set theta alpha_f eta_f on faces, which the grains feel of the fluid, and

@@ -7,6 +7,7 @@
 #include "talus/projection.h"
 #include "talus/two_phase/fractions.h"
 #include "talus/two_phase/measure.h"
+#include "talus/two_phase/pressures.h"
 #include "talus/two_phase/state.h"
 #include "talus/two_phase/step.h"
 #include "talus/two_phase/time_step.h"
@@ -30,7 +31,7 @@ static double measure_force(struct two_phase *sim) {
   double *g[DIM], sum = 0;
   step_density(sim);
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, g);
-  step_acceleration(sim, g);
+  pressures_acceleration(sim, g);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double g2 = 0;
     for (int d = 0; d < DIM; d++) g2 += g[d][i] * g[d][i];

@@ -32,9 +32,4 @@ void step_start(struct two_phase *sim);
 /* Make density, planes and skin those of c. Collective. */
 void step_density(struct two_phase *sim);
 
-/* Find gravity less pressure gradient over density, of p with the conditions
- * as they are: g[d] [nleaves]. The density is that of c (step_density).
- * Collective. */
-void step_acceleration(struct two_phase *sim, double *const g[DIM]);
-
 #endif
