@@ -7,6 +7,7 @@
 #include "talus/minmax.h"
 #include "talus/outline.h"
 #include "talus/projection.h"
+#include "talus/two_fluid/jumps.h"
 #include "talus/two_fluid/properties.h"
 #include "talus/two_fluid/state.h"
 #include "talus/two_fluid/surface.h"
@@ -24,10 +25,6 @@ enum { MOST_NEWTON = 40 };
 enum { MOST_PASSES = 4 };
 /* A face has at least this part of the mean mass of its leaves. */
 #define LEAST_LENT 0.1
-/* Still grains and the fluid past them are slower than this part of what
- * gravity gives in a step. */
-#define SLOW 0.1
-
 /* Give the solid fractions that both leaves lend to face f of axis d. */
 static inline void lent(const struct two_fluid *sim, int d, int32_t f,
                         double part[2]) {
@@ -103,21 +100,34 @@ static inline double share_of(const struct two_fluid *sim, int phase, int d,
   return (1 - upper) * face[side[2 * d]] + upper * face[side[2 * d + 1]];
 }
 
-void two_fluid_leaf_force(struct two_fluid *sim, int phase, int e, double *b) {
+/* Set `face` [nfaces_all] to the acceleration of a phase at faces of axis d by
+ * p, p_s and weight, without drag. */
+static void face_force(const struct two_fluid *sim, int phase, int d,
+                       double *face) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *face = sim->force_f->v;
   memset(face, 0, (size_t)mesh->nfaces_all * sizeof *face);
-  for (int32_t f = mesh->face_begin[e]; f < mesh->face_begin[e + 1]; f++) {
+  for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
     if (two_fluid_is_side(sim, f) && !(phase == TWO_FLUID_F && is_open(sim, f)))
       continue;
-    const struct two_fluid_pair pair = pair_of(sim, 0, e, f);
+    const struct two_fluid_pair pair = pair_of(sim, 0, d, f);
     double force = -mesh_gradient(mesh, sim->p->v, f);
-    if (phase == TWO_FLUID_S) force += force_of(sim, e, f, &pair);
+    if (phase == TWO_FLUID_S) force += force_of(sim, d, f, &pair);
     face[f] = force / (phase == TWO_FLUID_S ? pair.rho_s : pair.rho_f);
   }
   mesh_fill_faces(mesh, 1, &face);
-  for (int32_t i = 0; i < mesh->nleaves; i++)
-    b[i] = share_of(sim, phase, e, i, face);
+}
+
+void two_fluid_leaf_forces(struct two_fluid *sim, int e, double *const b[]) {
+  const struct mesh *mesh = sim->grid.mesh;
+  double *face[TWO_FLUID_NPHASES],
+      *more = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  scratch_take(&sim->scratch, FIELD_FACE, __func__, TWO_FLUID_NPHASES, face);
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++) face_force(sim, k, e, face[k]);
+  two_fluid_jumps(sim, 1, e, (const double *const *)face, more);
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++)
+    for (int32_t i = 0; i < mesh->nleaves; i++)
+      b[k][i] = share_of(sim, k, e, i, face[k]) + more[i];
+  scratch_give(&sim->scratch, __func__);
 }
 
 /* Return F of a velocity u of a phase at face f of axis d. */
@@ -146,24 +156,10 @@ static void set_means(struct two_fluid *sim) {
   }
 }
 
-/* Set the field still to how still the grains of leaves are, 1: at rest; 0
- * where they or the fluid past them move by SLOW of what gravity gives in dt,
- * or where they carry nothing. */
-static void find_still(struct two_fluid *sim, double dt) {
+static void find_still(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
-  const double slow = max2(SLOW * dt * params_gravity(sim->params), 1e-300);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double u2 = 0, slip2 = 0;
-    for (int e = 0; e < DIM; e++) {
-      const double u = sim->u[TWO_FLUID_S][e]->saved[i];
-      const double slip = sim->u[TWO_FLUID_F][e]->saved[i] - u;
-      u2 += u * u, slip2 += slip * slip;
-    }
-    const double c = sim->rest->v[i] > 0 ? sim->c->v[i] : 1;
-    sim->yield.still->v[i] = min2(sim->touches->v[i] / c, 1) *
-                             max2(0, 1 - sqrt(u2) / slow) *
-                             max2(0, 1 - slip2 / (slow * slow));
-  }
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    sim->yield.still->v[i] = two_fluid_stillness(sim, i);
   mesh_fill_ghosts(mesh, 1, &sim->yield.still->v);
 }
 
@@ -191,7 +187,7 @@ static void hold_still(struct two_fluid *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const double *still = sim->yield.still->v;
   double *own = sim->force_f->v;
-  find_still(sim, dt);
+  find_still(sim);
   for (int d = 0; d < DIM; d++) {
     find_pushes(sim, d, own);
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
@@ -378,29 +374,23 @@ static void drag_rest(struct two_fluid *sim, double dt, int e, int32_t i,
   *u_f += rest[1];
 }
 
-/* Give the leaves what their faces have got. */
-static void accelerate(struct two_fluid *sim, double dt) {
+/* Give the leaves what their faces have got along axis e. */
+static void accelerate_along(struct two_fluid *sim, double dt, int e) {
   const struct mesh *mesh = sim->grid.mesh;
-  for (int k = 0; k < TWO_FLUID_NPHASES; k++)
-    field_fill_faces(mesh, sim->w_f[k]);
-  for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
-    for (int e = 0; e < DIM; e++) {
-      double *u = sim->u[k][e]->v;
-      for (int32_t i = 0; i < mesh->nleaves; i++)
-        u[i] += share_of(sim, k, e, i, sim->v_f[k]->v);
-      mesh_touch(mesh, u);
+  const double *v[TWO_FLUID_NPHASES] = {sim->v_f[0]->v, sim->v_f[1]->v};
+  double *more = scratch_take_one(&sim->scratch, FIELD_CELL, __func__);
+  two_fluid_jumps(sim, dt, e, v, more);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    double u[TWO_FLUID_NPHASES];
+    for (int k = 0; k < TWO_FLUID_NPHASES; k++) {
+      const double gain = share_of(sim, k, e, i, v[k]);
+      u[k] = share_of(sim, k, e, i, sim->w_f[k]->v) + gain;
+      sim->u[k][e]->v[i] += gain + more[i];
     }
+    if (two_fluid_has_grains(sim, i)) drag_rest(sim, dt, e, i, u);
   }
-  for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      double u[2];
-      if (!two_fluid_has_grains(sim, i)) continue;
-      for (int k = 0; k < TWO_FLUID_NPHASES; k++)
-        u[k] = share_of(sim, k, e, i, sim->w_f[k]->v) +
-               share_of(sim, k, e, i, sim->v_f[k]->v);
-      drag_rest(sim, dt, e, i, u);
-    }
-  }
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++) mesh_touch(mesh, sim->u[k][e]->v);
+  scratch_give(&sim->scratch, __func__);
 }
 
 void two_fluid_pressures(struct two_fluid *sim, double dt) {
@@ -429,5 +419,7 @@ void two_fluid_pressures(struct two_fluid *sim, double dt) {
   }
   scratch_give(&sim->scratch, __func__);
   scratch_give(&sim->scratch, "flux of before");
-  accelerate(sim, dt);
+  for (int k = 0; k < TWO_FLUID_NPHASES; k++)
+    field_fill_faces(mesh, sim->w_f[k]);
+  for (int e = 0; e < DIM; e++) accelerate_along(sim, dt, e);
 }

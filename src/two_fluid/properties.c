@@ -15,6 +15,9 @@
  * where there are none. */
 #define LOOSE 1e-3
 #define NO_GRAINS 1e-6
+/* Still grains and the fluid past them are slower than this part of what
+ * gravity gives in a step. */
+#define SLOW 0.1
 
 /* Interpolated solid fractions stay within those that a leaf may have. */
 static void clamp_helpers(const struct two_fluid *sim, double *v, double low,
@@ -406,4 +409,22 @@ void two_fluid_viscosities(struct two_fluid *sim) {
     field_fill_faces(mesh, sim->eta_f[k]);
     field_fill_faces(mesh, sim->kappa_f[k]);
   }
+}
+
+double two_fluid_stillness(const struct two_fluid *sim, int32_t i) {
+  const double g = params_gravity(sim->params);
+  const double slow = max2(SLOW * sim->dt * g, 1e-300);
+  const double difference =
+      two_fluid_density(sim, TWO_FLUID_S) - two_fluid_density(sim, TWO_FLUID_F);
+  const double half =
+      0.5 * difference * g * sim->grid.mesh->h[i] * max2(sim->alpha->v[i], 0);
+  double u2 = 0, slip2 = 0;
+  if (!(half > 0)) return 0;
+  for (int e = 0; e < DIM; e++) {
+    const double u = sim->u[TWO_FLUID_S][e]->saved[i];
+    const double slip = sim->u[TWO_FLUID_F][e]->saved[i] - u;
+    u2 += u * u, slip2 += slip * slip;
+  }
+  return min2(max2(sim->p_s->v[i], 0) / half, 1) *
+         max2(0, 1 - sqrt(u2) / slow) * max2(0, 1 - slip2 / (slow * slow));
 }

@@ -174,10 +174,11 @@ static void solve_yield(struct two_fluid *sim, double dt, const double *mass,
                      BAD);
 }
 
+/* Solve for the grains and leave u_s* in `star`, where their forces are. */
 static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
                         double *const star[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *cell[DIM + 1], *a = sim->alpha_new->v;
+  double *cell[DIM + 1];
   double *shared = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM + 1, cell);
   double **rhs = cell, *mass = cell[DIM];
@@ -190,10 +191,9 @@ static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
   for (int e = 0; e < DIM; e++) {
     double *u_s = sim->u[TWO_FLUID_S][e]->v;
     const double *u_f = sim->u[TWO_FLUID_F][e]->v;
-    two_fluid_leaf_force(sim, TWO_FLUID_S, e, a);
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       const double m_s = mass_of(sim, TWO_FLUID_S, i);
-      u_s[i] += dt * a[i];
+      u_s[i] += dt * star[e][i];
       rhs[e][i] = m_s * u_s[i] + (mass[i] - m_s) * (u_f[i] + dt * b[e][i]);
     }
     mesh_touch(mesh, u_s);
@@ -275,7 +275,8 @@ void two_fluid_velocities(struct two_fluid *sim, double dt) {
   scratch_take(&sim->scratch, FIELD_CELL, "forces", DIM, b);
   scratch_take(&sim->scratch, FIELD_CELL, "velocity", DIM, star);
   two_fluid_fill_pressure(sim, dt);
-  for (int e = 0; e < DIM; e++) two_fluid_leaf_force(sim, TWO_FLUID_F, e, b[e]);
+  for (int e = 0; e < DIM; e++)
+    two_fluid_leaf_forces(sim, e, (double *const[]){star[e], b[e]});
   sim->scale = speed_scale(sim, dt);
   for (int k = 0; k < TWO_FLUID_NPHASES; k++)
     sim->viscous[k] = (struct solve_stats){0};

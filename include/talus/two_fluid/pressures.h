@@ -27,7 +27,8 @@
  *
  * and both are repeated until j stays. What goes through faces in the end are
  * the flux of the grains by (3) and the rest of j. Leaves get the mean over
- * their faces of u - w, and slip that this does not see is dragged in the leaf.
+ * their faces of u - w, between levels as jumps.h says, and slip that this does
+ * not see is dragged in the leaf.
  * Where fluid enters or leaves the box grains do not.
  *
  * Still grains. w of leaves has what p_s and weight of before do to leaves, and
@@ -61,9 +62,9 @@ struct two_fluid;
 
 /* Fill p for a step of dt. Collective. */
 void two_fluid_fill_pressure(struct two_fluid *sim, double dt);
-/* Set b [nleaves] to the acceleration along axis e of a phase by p, p_s and
- * weight, without drag: the mean over the faces of a leaf. Collective. */
-void two_fluid_leaf_force(struct two_fluid *sim, int phase, int e, double *b);
+/* Set b[k] [nleaves] to the acceleration along axis e of each phase by p, p_s
+ * and weight, without drag: the mean over the faces of a leaf. Collective. */
+void two_fluid_leaf_forces(struct two_fluid *sim, int e, double *const b[]);
 /* Find p_s, p, alpha_new and the fluxes of the end of the step, and accelerate
  * the leaves. Velocities, alpha and both pressures are filled. Collective. */
 void two_fluid_pressures(struct two_fluid *sim, double dt);
