@@ -6,13 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "talus/changed_energy.h"
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/four_state/measure.h"
 #include "talus/four_state/start.h"
 #include "talus/four_state/state.h"
 #include "talus/four_state/step.h"
-#include "talus/log.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
 #include "talus/no_grains.h"
@@ -60,13 +60,8 @@ static void remember(struct model *model) {
 
 /* Book what a restart with another gravity or other grains adds. */
 static void renew(struct model *model) {
-  static const double SAME = 1e-10; /* sums depend on the number of ranks */
   struct four_state *sim = of(model);
-  const double now = four_state_energy(sim), jump = now - sim->energy;
-  if (fabs(jump) <= SAME * (fabs(now) + fabs(sim->energy))) return;
-  log_info("restart with other conditions: energy changes from %.10g to %.10g",
-           sim->energy, now);
-  sim->changed += jump;
+  sim->changed += changed_energy(sim->energy, four_state_energy(sim));
 }
 
 static void destroy(struct model *model) {
@@ -147,6 +142,10 @@ enum {
   NCOLUMNS
 };
 
+/* In axisymmetric coordinates those of the whole turn around the axis. */
+#define VOLUME_UNIT "m^2 (3D, axisymmetric: m^3)"
+#define ENERGY_UNIT "J/m (3D, axisymmetric: J)"
+
 /* clang-format off */
 static const struct column COLUMNS[NCOLUMNS] = {
     [STEP] = {"step", COLUMN_INTEGER, "", "number of the step; 0 is the start"},
@@ -154,24 +153,24 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [DT] = {"dt", COLUMN_REAL, "s", "its length"},
     [CELLS] = {"cells", COLUMN_INTEGER, "", "leaves of the tree"},
     [FRONT] = {"front", COLUMN_SHORT, "m",
-               "where the contour nu = nu_surface ends, its x (3D: distance "
-               "from the lower edge of the box)"},
+               "where the contour nu = nu_surface ends, its x (3D and "
+               "axisymmetric: distance from the lower edge of the box)"},
     [HEIGHT] = {"height", COLUMN_SHORT, "m", "of that contour"},
     [GRAIN_FRONT] = {"grain_front", COLUMN_SHORT, "m",
                      "where the solid volume per area over nu_start falls "
                      "below half a grain"},
     [GRAIN_HEIGHT] = {"grain_height", COLUMN_SHORT, "m",
                       "largest solid volume per area over nu_start"},
-    [VOLUME] = {"volume", COLUMN_REAL, "m^2 (3D: m^3)", "of the grains alone"},
-    [KINETIC] = {"kinetic", COLUMN_SHORT, "J/m (3D: J)", "energy of mean motion"},
-    [POTENTIAL] = {"potential", COLUMN_SHORT, "J/m (3D: J)", "energy"},
-    [FLUCTUATING] = {"fluctuating", COLUMN_SHORT, "J/m (3D: J)",
+    [VOLUME] = {"volume", COLUMN_REAL, VOLUME_UNIT, "of the grains alone"},
+    [KINETIC] = {"kinetic", COLUMN_SHORT, ENERGY_UNIT, "energy of mean motion"},
+    [POTENTIAL] = {"potential", COLUMN_SHORT, ENERGY_UNIT, "energy"},
+    [FLUCTUATING] = {"fluctuating", COLUMN_SHORT, ENERGY_UNIT,
                      "3/2 rho_d nu T, energy of fluctuations"},
-    [ELASTIC] = {"elastic", COLUMN_SHORT, "J/m (3D: J)",
+    [ELASTIC] = {"elastic", COLUMN_SHORT, ENERGY_UNIT,
                  "work that the packing has stored"},
-    [DISSIPATED] = {"dissipated", COLUMN_SHORT, "J/m (3D: J)",
+    [DISSIPATED] = {"dissipated", COLUMN_SHORT, ENERGY_UNIT,
                     "by friction and collisions since the start"},
-    [NUMERICAL] = {"numerical", COLUMN_SHORT, "J/m (3D: J)",
+    [NUMERICAL] = {"numerical", COLUMN_SHORT, ENERGY_UNIT,
                    "what all these and impact miss of the start and of "
                    "work_of_changes, but for what gravity brings along a "
                    "periodic side: lost by the scheme"},
@@ -194,10 +193,10 @@ static const struct column COLUMNS[NCOLUMNS] = {
                                "of the solver for T"},
     [WALL_SECONDS] = {"wall_seconds", COLUMN_SHORT, "s",
                       "on the clock since the first step"},
-    [WORK_OF_CHANGES] = {"work_of_changes", COLUMN_SHORT, "J/m (3D: J)",
+    [WORK_OF_CHANGES] = {"work_of_changes", COLUMN_SHORT, ENERGY_UNIT,
                          "energy that restarts with another gravity or other "
                          "grains have added"},
-    [IMPACT] = {"impact", COLUMN_SHORT, "J/m (3D: J)",
+    [IMPACT] = {"impact", COLUMN_SHORT, ENERGY_UNIT,
                 "work against the pressure of grains that their packing has "
                 "not stored: lost by grains that land on others; less where p_K "
                 "and p_D drive grains apart, which eq. 3 leaves out"},

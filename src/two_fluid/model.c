@@ -6,10 +6,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "talus/changed_energy.h"
 #include "talus/error.h"
 #include "talus/forest.h"
 #include "talus/memory.h"
 #include "talus/minmax.h"
+#include "talus/no_grains.h"
 #include "talus/outline.h"
 #include "talus/two_fluid/measure.h"
 #include "talus/two_fluid/properties.h"
@@ -54,6 +56,17 @@ static struct model *start(const struct params *params,
 static struct model *resume(const struct params *params,
                             struct forest *forest) {
   return model_of(two_fluid_new_on(params, forest));
+}
+
+static void remember(struct model *model) {
+  struct two_fluid *sim = of(model);
+  sim->energy = two_fluid_energy(sim);
+}
+
+/* Book what a restart with another gravity or other grains adds. */
+static void renew(struct model *model) {
+  struct two_fluid *sim = of(model);
+  sim->changed += changed_energy(sim->energy, two_fluid_energy(sim));
 }
 
 static void destroy(struct model *model) {
@@ -135,6 +148,7 @@ enum {
   VISCOUS_ITERATIONS,
   FLUID_VISCOUS_ITERATIONS,
   WALL_SECONDS,
+  WORK_OF_CHANGES,
   NCOLUMNS
 };
 
@@ -169,8 +183,8 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [POTENTIAL] = {"potential", COLUMN_SHORT, ENERGY_UNIT,
                    "energy of the grains, less buoyancy"},
     [LOST] = {"lost", COLUMN_SHORT, ENERGY_UNIT,
-              "what these three miss of the start: friction, drag, viscosity "
-              "and the scheme"},
+              "what these three miss of the start and of work_of_changes: "
+              "friction, drag, viscosity and the scheme"},
     [MAX_FLUX] = {"max_flux", COLUMN_SHORT, "m/s",
                   "largest volume flux of grains through a face"},
     [MAX_SPEED] = {"max_speed", COLUMN_SHORT, "m/s",
@@ -196,7 +210,10 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [FLUID_VISCOUS_ITERATIONS] = {"fluid_viscous_iterations", COLUMN_INTEGER, "",
                                   "of that for the fluid"},
     [WALL_SECONDS] = {"wall_seconds", COLUMN_SHORT, "s",
-                      "on the clock since the first step"},
+                       "on the clock since the first step"},
+    [WORK_OF_CHANGES] = {"work_of_changes", COLUMN_SHORT, ENERGY_UNIT,
+                         "energy that restarts with another gravity or other "
+                         "grains have added"},
 };
 /* clang-format on */
 
@@ -213,7 +230,8 @@ static void set_measures(const struct two_fluid *sim,
   value[KINETIC] = m->kinetic;
   value[FLUID_KINETIC] = m->fluid_kinetic;
   value[POTENTIAL] = m->potential;
-  value[LOST] = sim->initial - m->kinetic - m->fluid_kinetic - m->potential;
+  value[LOST] = sim->initial + sim->changed - m->kinetic - m->fluid_kinetic -
+                m->potential;
   value[MAX_FLUX] = m->max_flux;
   value[MAX_SPEED] = m->max_speed;
   value[GRAIN_SPEED] = m->grain_speed;
@@ -241,6 +259,7 @@ static void set_row(const struct two_fluid *sim,
   value[VISCOUS_ITERATIONS] = sim->viscous[TWO_FLUID_S].iterations;
   value[FLUID_VISCOUS_ITERATIONS] = sim->viscous[TWO_FLUID_F].iterations;
   value[WALL_SECONDS] = model->wall_seconds;
+  value[WORK_OF_CHANGES] = sim->changed;
 }
 
 /* Warn once of a run that makes energy: it is not to be believed. */
@@ -271,7 +290,10 @@ static void measure(struct model *model, double value[],
   struct two_fluid *sim = of(model);
   struct two_fluid_measures m;
   two_fluid_measure(sim, &m);
-  if (model->step == 0) sim->initial = two_fluid_energy(sim);
+  if (model->step == 0) {
+    sim->initial = two_fluid_energy(sim);
+    no_grains_warn(sim->params, m.volume);
+  }
   set_row(sim, &m, value);
   check_energy(sim, &m, value[LOST]);
   if (outline) {
@@ -290,7 +312,9 @@ static const struct scalar SCALARS[] = {
     {"travel", SCALAR_REAL, AT(travel), 0, DBL_MAX},
     {"slow_time", SCALAR_REAL, AT(slow_time), 0, DBL_MAX},
     {"largest_viscosity", SCALAR_REAL, AT(eta_max), 0, DBL_MAX},
-    {"initial_energy", SCALAR_REAL, AT(initial), -DBL_MAX, DBL_MAX}};
+    {"initial_energy", SCALAR_REAL, AT(initial), -DBL_MAX, DBL_MAX},
+    {"changed_energy", SCALAR_REAL, AT(changed), -DBL_MAX, DBL_MAX},
+    {"energy", SCALAR_REAL, AT(energy), -DBL_MAX, DBL_MAX}};
 
 static const char *const STAGES[TWO_FLUID_NSTAGES] = {
     [TWO_FLUID_CLOSURES] = "closures",
@@ -306,11 +330,13 @@ const struct model_kind two_fluid_model = {
     .describe = describe,
     .start = start,
     .resume = resume,
+    .renew = renew,
     .destroy = destroy,
     .advance = advance,
     .is_at_rest = is_at_rest,
     .measure = measure,
     .outputs = outputs,
+    .remember = remember,
     .columns = COLUMNS,
     .ncolumns = NCOLUMNS,
     .scalars = SCALARS,

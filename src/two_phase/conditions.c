@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "talus/changed_energy.h"
 #include "talus/log.h"
 #include "talus/projection.h"
 #include "talus/two_phase/fractions.h"
@@ -100,13 +101,7 @@ void conditions_renew(struct two_phase *sim) {
     gravity = fmax(gravity, fabs(sim->params->gravity[d]));
   }
   const double weight = gravity * mesh_sum(sim->grid.mesh, volume);
-  const double jump = now.energy - before->energy;
-  if (fabs(jump) > SAME * (fabs(now.energy) + fabs(before->energy))) {
-    log_info(
-        "restart with other conditions: energy changes from %.10g to %.10g",
-        before->energy, now.energy);
-    sim->energy.changed += jump;
-  }
+  sim->energy.changed += changed_energy(before->energy, now.energy);
   if (fabs(now.gas - before->gas) > SAME * fabs(before->gas)) {
     sim->energy.gas += now.gas - before->gas;
   }

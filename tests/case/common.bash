@@ -21,6 +21,44 @@ complain() {
   failures=$((failures + 1))
 }
 
+# ends STATUS COMMAND...: the command ends with this status
+ends() {
+  local expected=$1 status
+  shift
+  timeout "$limit" "$@" > output 2>&1
+  status=$?
+  [ $status -eq "$expected" ] || complain "$*: exit status $status"
+}
+
+# says PATTERN: so does the last command
+says() {
+  grep -q "$1" output || complain "nothing matches $1"
+}
+
+# series DIR: series.csv without the clock
+series() {
+  awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) if ($k == "wall_seconds") clock = k }
+    { for (k = 1; k <= NF; k++) if (k != clock) printf "%s,", $k; print "" }' \
+    "$1/series.csv"
+}
+
+# last DIR COLUMN: value in the last row of series.csv
+last() {
+  awk -F, -v name="$2" '
+    NR == 1 { for (k = 1; k <= NF; k++) if ($k == name) column = k }
+    END { print column ? $column : "no column " name }' "$1/series.csv"
+}
+
+# books DIR TURNED COLUMN: TURNED is DIR, a step later and with twice the
+# gravity; the energy of this is no loss, which stands in COLUMN
+books() {
+  awk -v potential="$(last "$1" potential)" -v lost="$(last "$1" "$3")" \
+    -v changed="$(last "$2" work_of_changes)" -v now="$(last "$2" "$3")" 'BEGIN {
+      d = changed / potential - 1; e = (now - lost) / potential
+      exit !(d < 1e-6 && -d < 1e-6 && e < 0.01 && -e < 0.01) }' ||
+    complain "$2: another gravity is booked as $3"
+}
+
 # find_python: $python has what pictures need; without one the test is skipped
 find_python() {
   for python in "${PYTHON:-python3}" python3 /usr/bin/python3; do

@@ -7,15 +7,6 @@
 . "$(dirname "$0")/common.bash"
 case=$root/tests/model/given_flow.lua
 
-# ends STATUS COMMAND...
-ends() {
-  local want=$1 status
-  shift
-  timeout "$limit" "$@" > output 2>&1
-  status=$?
-  [ $status -eq "$want" ] || complain "$*: exit status $status, not $want"
-}
-
 # says WORDS: the last command did
 says() {
   own_words < output | tr '\n' ' ' | grep -qF -- "$1" ||

@@ -68,11 +68,6 @@ says() {
   grep -qE "$3" "$2" || complain "$1: $2 does not say $3"
 }
 
-# last DIR COLUMN: value in the last row of series.csv
-last() {
-  tail -n 1 "$1/series.csv" | cut -d, -f"$2"
-}
-
 # within NAME VALUE EXPECTED TOLERANCE
 within() {
   awk -v v="$2" -v e="$3" -v t="$4" \
@@ -85,7 +80,7 @@ within() {
 for w in 0.25 0.3137 0.09; do
   must run jet.lua "W=$w" --quiet -o jet.out
   [ -s output ] && complain "jet, W = $w: is not quiet"
-  within "jet, W = $w" "$(last jet.out 7)" "$(awk "BEGIN { print $w / 2 }")" \
+  within "jet, W = $w" "$(last jet.out volume)" "$(awk "BEGIN { print $w / 2 }")" \
     "$(awk "BEGIN { print $w * 5e-4 }")"
 done
 says jet jet.out/run.log 'boundary.patches.jet covers 0.09 m of top, 1 faces'
@@ -116,6 +111,6 @@ refuses 'boundary.pressure_level = 0 .*boundary.(top|patches.outlet) is an' \
 must run outlet.lua W=0.1 --quiet -o out
 must run outlet.lua W=0.1 open=true stop=0.4 --restart --quiet -o out
 says outlet out/run.log 'boundary.patches.outlet covers 0.1 m of bottom, 1 faces'
-within "outlet" "$(last out 7)" 7.495 0.004
+within "outlet" "$(last out volume)" 7.495 0.004
 
 [ "$failures" -eq 0 ]

@@ -39,11 +39,6 @@ state() {
   grep -q "^state: $2" output || complain "$1: the state is not '$2'"
 }
 
-# series DIR: series.csv without the column of wall-clock time
-series() {
-  cut -d, -f1-13,15- "$1/series.csv"
-}
-
 # same NAME DIR DIR: both tables agree to the last bit
 same() {
   series "$2" > a
@@ -53,11 +48,6 @@ same() {
     complain "$1: profile.csv differs"
   diff "$2/snapshots.xdmf" "$3/snapshots.xdmf" > output ||
     complain "$1: snapshots.xdmf differs"
-}
-
-# last DIR COLUMN: value in the last row of series.csv
-last() {
-  tail -n 1 "$1/series.csv" | cut -d, -f"$2"
 }
 
 # refused PATTERN WORDS...: exit status 2 and a message
@@ -101,7 +91,7 @@ refused 'no values of stress_0 .* needs the .*regularisation of the first run' \
 # another grid is made at once, a level in a step, though nothing moves
 still="$root/examples/rest.lua stop=1"
 cells() {
-  last "$1" 4
+  last "$1" cells
 }
 stops 1 talus2d run $still level=7 -o fine --quiet --max-steps 1
 stops 1 talus2d run $still level=5 -o finer --quiet --max-steps 2
@@ -128,7 +118,7 @@ for n in 1 2; do
   must $n talus2d run $cylinder -o rings-$n --quiet --restart
   same "cylinder on $n" cylinder-$n rings-$n
 done
-awk -v a="$(last cylinder-1 5)" -v b="$(last cylinder-2 5)" \
+awk -v a="$(last cylinder-1 front)" -v b="$(last cylinder-2 front)" \
   'BEGIN { exit !(a - b < 0.01 && b - a < 0.01) }' ||
   complain "the front of a cylinder depends on ranks"
 quarter="$root/examples/cylinder.lua dimension=3 cells=4 stop=1 strip=5 r_i=0.02"
@@ -165,10 +155,10 @@ for pair in "1 2" "2 1" "1 3"; do
   rm -rf other
   stops "$1" talus2d run $column -o other --quiet --max-steps 7
   must "$2" talus2d run $column -o other --quiet --restart
-  [ "$(last other 2)" = 2 ] || complain "$1 to $2 ranks: not at the end"
-  awk -v a="$(last other 5)" -v b="$(last whole-1 5)" \
+  [ "$(last other time)" = 2 ] || complain "$1 to $2 ranks: not at the end"
+  awk -v a="$(last other front)" -v b="$(last whole-1 front)" \
     'BEGIN { exit !(a - b < 0.25 && b - a < 0.25) }' ||
-    complain "$1 to $2 ranks: front $(last other 5), not $(last whole-1 5)"
+    complain "$1 to $2 ranks: front $(last other front), not $(last whole-1 front)"
 done
 
 # A signal ends the step, and says how to go on.
@@ -190,9 +180,9 @@ for signal in INT TERM HUP; do
   status=$?
   [ $status -eq 5 ] || complain "SIG$signal: exit status $status, not 5"
   state signal "stopped before its end.*by SIG$signal at step"
-  step=$(last signal 1)
+  step=$(last signal step)
   stops 1 talus2d run $endless -o signal --quiet --restart --max-steps 2
-  [ "$(last signal 1)" -eq $((step + 2)) ] || complain "SIG$signal: went nowhere"
+  [ "$(last signal step)" -eq $((step + 2)) ] || complain "SIG$signal: went nowhere"
 done
 
 # While it starts there is nothing to save, and a signal ends it at once.

@@ -112,6 +112,8 @@ struct two_fluid {
   struct granular_stats pressure;
   struct solve_stats viscous[TWO_FLUID_NPHASES], projection;
   double initial; /* energy at t = 0, J/m (3D: J) */
+  double changed; /* that restarts with other conditions have added */
+  double energy;  /* when the checkpoint was written */
 };
 
 /* Set the closures that a case asks for; a USER_ERROR says what is wrong with
