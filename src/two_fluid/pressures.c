@@ -156,10 +156,12 @@ static void set_means(struct two_fluid *sim) {
   }
 }
 
+/* Leaves without grains are still, for the faces that a bed has with them. */
 static void find_still(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++)
-    sim->yield.still->v[i] = two_fluid_stillness(sim, i);
+    sim->yield.still->v[i] =
+        two_fluid_has_grains(sim, i) ? two_fluid_slowness(sim, i) : 1;
   mesh_fill_ghosts(mesh, 1, &sim->yield.still->v);
 }
 

@@ -161,15 +161,16 @@ static double law(const struct two_fluid *sim, int32_t i, double alpha,
 
 double two_fluid_law(const struct two_fluid *sim, int32_t i, double alpha,
                      double dt, double *slope) {
-  const double p = law(sim, i, alpha, dt, slope), s = sim->rest->v[i];
-  const double at_rest = s * alpha + sim->burden->v[i];
+  const double m = sim->borne->v[i];
+  const double p = law(sim, i, alpha, dt, slope), s = m * sim->rest->v[i];
+  const double at_rest = s * alpha + m * sim->burden->v[i];
   if (p >= at_rest) return p;
   if (slope != NULL) *slope = s;
   return at_rest;
 }
 
-/* Return what shear by 1 would add to the pressure of leaf i, Pa: dense grains
- * dilate, and what holds them together presses until they can. */
+/* Return what shear by 1 would add to the pressure p_s of leaf i, Pa: dense
+ * grains dilate, and what holds them together presses until they can. */
 static double hardening_of(const struct two_fluid *sim, int32_t i, double p_s) {
   static const double STEP = 1e-6; /* of phi_p */
   const struct two_fluid_closure *c = &sim->closure;
@@ -178,9 +179,10 @@ static double hardening_of(const struct two_fluid *sim, int32_t i, double p_s) {
   if (c->set != TWO_FLUID_CRITICAL_STATE) return 0;
   const double rate =
       two_fluid_plastic_rate(c, alpha, p_s, gamma, sim->eta->v[i]);
-  const struct two_fluid_frozen with = {.phi_p = phi_p - STEP,
-                                        .X = sim->X->v[i]};
-  const double rise = two_fluid_pressure(c, alpha, &with, NULL) - p_s;
+  struct two_fluid_frozen with = {.phi_p = phi_p, .X = sim->X->v[i]};
+  const double before = two_fluid_pressure(c, alpha, &with, NULL);
+  with.phi_p -= STEP;
+  const double rise = two_fluid_pressure(c, alpha, &with, NULL) - before;
   return max2(-rate / gamma * phi_p * rise / STEP, 0);
 }
 
@@ -411,20 +413,23 @@ void two_fluid_viscosities(struct two_fluid *sim) {
   }
 }
 
-double two_fluid_stillness(const struct two_fluid *sim, int32_t i) {
+double two_fluid_slowness(const struct two_fluid *sim, int32_t i) {
   const double g = params_gravity(sim->params);
   const double slow = max2(SLOW * sim->dt * g, 1e-300);
-  const double difference =
-      two_fluid_density(sim, TWO_FLUID_S) - two_fluid_density(sim, TWO_FLUID_F);
-  const double half =
-      0.5 * difference * g * sim->grid.mesh->h[i] * max2(sim->alpha->v[i], 0);
   double u2 = 0, slip2 = 0;
-  if (!(half > 0)) return 0;
   for (int e = 0; e < DIM; e++) {
     const double u = sim->u[TWO_FLUID_S][e]->saved[i];
     const double slip = sim->u[TWO_FLUID_F][e]->saved[i] - u;
     u2 += u * u, slip2 += slip * slip;
   }
-  return min2(max2(sim->p_s->v[i], 0) / half, 1) *
-         max2(0, 1 - sqrt(u2) / slow) * max2(0, 1 - slip2 / (slow * slow));
+  return max2(0, 1 - sqrt(u2) / slow) * max2(0, 1 - slip2 / (slow * slow));
+}
+
+double two_fluid_stillness(const struct two_fluid *sim, int32_t i) {
+  const double difference =
+      two_fluid_density(sim, TWO_FLUID_S) - two_fluid_density(sim, TWO_FLUID_F);
+  const double half = 0.5 * difference * params_gravity(sim->params) *
+                      sim->grid.mesh->h[i] * max2(sim->alpha->v[i], 0);
+  if (!(half > 0)) return 0;
+  return min2(max2(sim->p_s->v[i], 0) / half, 1) * two_fluid_slowness(sim, i);
 }

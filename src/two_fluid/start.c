@@ -14,6 +14,7 @@
 #include "talus/outline.h"
 #include "talus/shape_memory.h"
 #include "talus/two_fluid/state.h"
+#include "talus/two_fluid/surface.h"
 #include "talus/two_fluid_grains.h"
 
 /* Viscosity of the grains is capped where a slope creeps at this times sqrt(g
@@ -55,6 +56,7 @@ static void fill_leaf(struct two_fluid *sim, const struct filling *by,
   if (keys->start == TWO_FLUID_DENSE)
     sim->phi_p->v[i] = two_fluid_plastic_of(
         &sim->closure, alpha, depth * alpha * weight_of(sim, by->axis));
+  sim->bed->v[i] = alpha;
   sim->alpha->v[i] = c * alpha;
 }
 
@@ -252,6 +254,7 @@ struct two_fluid *two_fluid_new(const struct params *params,
   }
   openings_check(&sim->grid);
   set_fluxes(sim);
+  if (sim->keys->start != TWO_FLUID_PATCHED) two_fluid_lay_beds(sim);
   check_balance(sim);
   if (!sim->exact) set_cap(sim, axis);
   if (!settled) say_pressure(sim, axis);

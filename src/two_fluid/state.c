@@ -105,6 +105,8 @@ static void add_state(struct two_fluid *sim) {
                    &solid_rule, plastic);
   sim->X = add(sim, "shear_stress", "Pa", "shear that makes pressure",
                &solid_rule, false);
+  sim->bed = add(sim, "bed_packing", "1", "solid fraction of the bed in a leaf",
+                 &solid_rule, false);
   add_tracers(sim);
   sim->flux = add_kept_face(sim, "solid_flux", "volume flux of the grains",
                             &remap_faces);
@@ -143,6 +145,7 @@ static void add_leaves(struct two_fluid *sim) {
   sim->phi = add(sim, "bed_fraction", "1", "", NULL, false);
   sim->rest = add(sim, "resting", "Pa", "", NULL, false);
   sim->burden = add(sim, "burden", "Pa", "", NULL, false);
+  sim->borne = add(sim, "borne", "1", "", NULL, false);
   sim->lack = add(sim, "lack", "Pa", "", NULL, false);
   sim->carried = add(sim, "carried", "1", "", NULL, false);
   sim->plane = add(sim, "plane", "1", "", NULL, false);

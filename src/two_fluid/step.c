@@ -49,6 +49,7 @@
 #include "talus/two_fluid/pressures.h"
 #include "talus/two_fluid/properties.h"
 #include "talus/two_fluid/state.h"
+#include "talus/two_fluid/surface.h"
 #include "talus/two_fluid/time_step.h"
 #include "talus/two_fluid/transport.h"
 #include "talus/two_fluid/velocities.h"
@@ -121,6 +122,7 @@ static double advance_state(struct two_fluid *sim, double dt) {
   const double given = two_fluid_given(sim, dt);
   two_fluid_transport(sim, dt);
   shear_grains(sim, dt);
+  two_fluid_settle_beds(sim, dt);
   level_pressure(sim), two_fluid_lap(sim, TWO_FLUID_TRANSPORT);
   return given;
 }

@@ -13,6 +13,8 @@
 static const double THINNEST = 0.5;
 /* A bed that fills this part of a leaf carries what lies in the one above. */
 static const double FULL = 0.5;
+/* A leaf of this part of the loosest solid fraction at rest is full. */
+static const double PACKED = 0.9;
 /* The part of a face that is wetted is that of a volume so many edges deep. */
 static const double SHALLOW = 1e-6;
 
@@ -30,11 +32,30 @@ static double pressure_at_rest(const struct two_fluid *sim, int32_t i,
   return two_fluid_pressure(&sim->closure, alpha, &with, NULL);
 }
 
-/* Set `load` of leaves to the load they carry over s alpha. */
+/* Return P of a bed of packing phi in leaf i. */
+static double pressure_of(const struct two_fluid *sim, int32_t i, double phi) {
+  const struct two_fluid_frozen with = {
+      .phi_p = sim->phi_p->v[i], .X = sim->X->v[i], .Theta = sim->Theta->v[i]};
+  return two_fluid_pressure(&sim->closure, phi, &with, NULL);
+}
+
+/* Return the load of the middle of the bed in leaf i, Pa. */
+static double load_of(const struct two_fluid *sim, int32_t i) {
+  return sim->rest->v[i] * max2(sim->alpha->v[i], 0) + sim->burden->v[i];
+}
+
+/* Return the least packing of a bed in leaf i. */
+static double loosest_bed(const struct two_fluid *sim, int32_t i) {
+  return PACKED * two_fluid_loosest(&sim->closure, sim->phi_p->v[i]);
+}
+
+/* Set `load` of leaves to the load they carry over s alpha; 1 in a bed. */
 static void find_carried(const struct two_fluid *sim, int axis, double *load) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double alpha = sim->alpha->v[i];
+    load[i] = 1;
+    if (alpha >= loosest_bed(sim, i)) continue;
     load[i] = two_fluid_has_grains(sim, i)
                   ? min2(pressure_at_rest(sim, i, alpha) /
                              (weight_of(sim, axis, i) * alpha),
@@ -69,14 +90,13 @@ static bool rests(const struct two_fluid *sim, int32_t i, int below,
 /* Set c and phi of a leaf with s and W. */
 static void set_leaf(struct two_fluid *sim, int32_t i) {
   const double alpha = max2(sim->alpha->v[i], 0), s = sim->rest->v[i];
-  const double loose = two_fluid_loosest(&sim->closure, sim->phi_p->v[i]);
   double phi = alpha;
-  sim->c->v[i] = min2(alpha / (0.9 * loose), 1);
+  sim->c->v[i] = min2(alpha / loosest_bed(sim, i), 1);
+  sim->borne->v[i] = 0;
   if (s > 0) {
-    phi = two_fluid_settled(&sim->closure, s * alpha + sim->burden->v[i],
-                            sim->phi_p->v[i]);
-    phi = max2(phi, alpha);
+    phi = max2(sim->bed->v[i], alpha);
     sim->c->v[i] = alpha / phi;
+    sim->borne->v[i] = min2(pressure_of(sim, i, phi) / load_of(sim, i), 1);
   }
   sim->phi->v[i] = phi;
 }
@@ -154,6 +174,73 @@ void two_fluid_find_surface(struct two_fluid *sim) {
   double *normal[DIM];
   field_arrays(sim->normal, normal);
   vof_reconstruct(mesh, sim->c->v, normal, sim->plane->v);
+}
+
+void two_fluid_lay_beds(struct two_fluid *sim) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct two_fluid_keys *keys = sim->keys;
+  two_fluid_find_surface(sim);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double load = load_of(sim, i);
+    if (!(load > 0)) continue;
+    if (keys->start == TWO_FLUID_DENSE)
+      sim->phi_p->v[i] =
+          two_fluid_plastic_of(&sim->closure, sim->bed->v[i], load);
+    else
+      sim->bed->v[i] = two_fluid_settled(&sim->closure, load, sim->phi_p->v[i]);
+  }
+  mesh_touch(mesh, sim->bed->v);
+  mesh_touch(mesh, sim->phi_p->v);
+}
+
+/* Return how far the grains of leaf i sink through the fluid over dt, m, on its
+ * side `below`. */
+static double sunk(const struct two_fluid *sim, int32_t i, int below,
+                   double dt) {
+  const int32_t f = sim->grid.mesh->cell_face[i][below];
+  const double u = sim->w_f[TWO_FLUID_S]->v[f] + sim->v_f[TWO_FLUID_S]->v[f];
+  const double up = below & 1 ? sim->j->v[f] - u : u - sim->j->v[f];
+  return two_fluid_is_side(sim, f) ? 0 : -dt * up;
+}
+
+/* Return the packing of the bed in leaf i after dt: it gets denser as its top
+ * sinks through the fluid, and looser as its bottom does. */
+static double next_packing(const struct two_fluid *sim, int32_t i, int below,
+                           double dt) {
+  static const double ENOUGH = 1e-12;
+  const double h = sim->grid.mesh->h[i], bed = sim->bed->v[i];
+  const double load = load_of(sim, i), a = 1 - bed;
+  const double part = min2(sim->alpha->v[i] / bed, 1);
+  const double buoyant = 2 * sim->rest->v[i] / h;
+  const double most = dt * a * a * buoyant / max2(sim->drag->v[i], 1e-300);
+  const double bottom = sunk(sim, i, below, dt);
+  double low = loosest_bed(sim, i), high = two_fluid_densest(&sim->closure);
+  while (high - low > ENOUGH) {
+    const double phi = 0.5 * (low + high);
+    const double top = most * (1 - pressure_of(sim, i, phi) / load);
+    if (phi - bed > bed / (part * h) * (top - bottom))
+      high = phi;
+    else
+      low = phi;
+  }
+  return low;
+}
+
+void two_fluid_settle_beds(struct two_fluid *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const int axis = outline_axis(sim->params->gravity);
+  const int below = 2 * axis + (sim->params->gravity[axis] > 0 ? 1 : 0);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double alpha = max2(sim->alpha->v[i], 0);
+    const double loosest = loosest_bed(sim, i);
+    double *bed = &sim->bed->v[i];
+    if (sim->rest->v[i] > 0 && two_fluid_has_grains(sim, i))
+      *bed = next_packing(sim, i, below, dt);
+    else if (alpha >= loosest)
+      *bed = alpha;
+    *bed = max2(max2(*bed, alpha), loosest);
+  }
+  mesh_touch(mesh, sim->bed->v);
 }
 
 /* Does the surface cut a leaf or ghost? */

@@ -121,6 +121,7 @@ static void carry_grains(struct two_fluid *sim, double dt) {
   for (int e = 0; e < DIM; e++) carry(sim, &by, sim->u[TWO_FLUID_S][e]);
   carry(sim, &by, sim->phi_p);
   carry(sim, &by, sim->X);
+  carry(sim, &by, sim->bed);
   carry_tracers(sim, &by);
   scratch_give(&sim->scratch, __func__);
 }

@@ -114,6 +114,18 @@ static void keep_solid(struct two_fluid *sim, double dt, const double *shared,
   }
 }
 
+/* Let leaves without grains keep the velocity that they have, that of the
+ * grains around them: in free fall they would have a part in div u of the faces
+ * of the leaves beside them. */
+static void keep_empty(const struct two_fluid *sim, const double *mass,
+                       double *const rhs[DIM]) {
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    if (two_fluid_has_grains(sim, i)) continue;
+    for (int e = 0; e < DIM; e++)
+      rhs[e][i] = mass[i] * sim->u[TWO_FLUID_S][e]->v[i];
+  }
+}
+
 /* Solve for the grains with their friction. Leaves in `shared` what set_shared
  * does. */
 static void solve_capped(struct two_fluid *sim, double dt, const double *mass,
@@ -125,6 +137,7 @@ static void solve_capped(struct two_fluid *sim, double dt, const double *mass,
       two_fluid_viscosities(sim);
     }
     set_shared(sim, dt, shared, all);
+    keep_empty(sim, mass, rhs);
     solve(sim, TWO_FLUID_S, dt, all, mass, rhs,
           sim->params->tolerance_viscous * sim->scale);
   }
@@ -161,6 +174,7 @@ static void solve_yield(struct two_fluid *sim, double dt, const double *mass,
     yield_set_rate(&sim->yield, sim->params, buoyant, sim->scale);
     yield_linearise(&sim->yield, k > 0 ? 0 : dt, r, eta, full);
     set_shared(sim, dt, shared, all);
+    keep_empty(sim, mass, rhs);
     memcpy(all, eta, (size_t)mesh->nfaces_all * sizeof *all);
     add_stress(sim, dt, rhs, shared, all, full);
     solve(sim, TWO_FLUID_S, dt, all, mass, full,
@@ -193,7 +207,7 @@ static void solve_solid(struct two_fluid *sim, double dt, double *const b[DIM],
     const double *u_f = sim->u[TWO_FLUID_F][e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       const double m_s = mass_of(sim, TWO_FLUID_S, i);
-      u_s[i] += dt * star[e][i];
+      if (two_fluid_has_grains(sim, i)) u_s[i] += dt * star[e][i];
       rhs[e][i] = m_s * u_s[i] + (mass[i] - m_s) * (u_f[i] + dt * b[e][i]);
     }
     mesh_touch(mesh, u_s);

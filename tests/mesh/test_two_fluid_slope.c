@@ -65,10 +65,9 @@ static double stress_error(struct two_fluid *sim) {
 }
 
 /* Below the slope of repose, 23 degrees, a layer creeps only, or rests where it
- * yields exactly, but for shakes of up to 1.1e-4 m/s that pass within a few
- * steps and begin after 0.3 s; above, loose grains flow at once, and smoothly:
- * 0.6 mm/s at the surface in the experiment. Their stress holds their weight.
- */
+ * yields exactly, but for shakes in 3D, of 1e-6 m/s, and 3.4e-6 on two ranks;
+ * above, loose grains flow at once, and smoothly: 0.6 mm/s at the surface in
+ * the experiment. Their stress holds their weight. */
 START_TEST(a_layer_slides_beyond_repose) {
   const bool exact = _i >= 2, slides = _i % 2;
   double z[] = {-1, H}, rough;
@@ -78,22 +77,21 @@ START_TEST(a_layer_slides_beyond_repose) {
   p.shape = (struct function){bed, z};
   struct two_fluid *sim = grains_new(&p);
   bool done = true;
-  double u = 0;
-  int still = 0, steps = 0;
+  double u = 0, most = 0;
   while (done && sim->model.time < 0.5 * (1 - 1e-12)) {
     done = grains_run(sim, 0.5, 1);
     u = velocity(sim, &rough);
-    steps++, still += u < 1e-7;
+    if (sim->model.time > 0.1) most = fmax(most, u);
   }
   const double wrong = stress_error(sim);
   two_fluid_destroy(sim);
   ck_assert(done);
-  if (exact && !slides) ck_assert_int_ge(still, steps / 2);
+  if (exact && !slides) ck_assert_double_le(most, DIM == 2 ? 1e-6 : 1e-5);
   /* held grains have normal stresses besides, in 3D up to 0.16 of the weight,
    * and what shakes leave, up to 0.09 */
   if (slides) ck_assert_double_le(wrong, 0.05);
   if (exact && DIM == 2) ck_assert_double_le(wrong, 0.15);
-  ck_assert_double_le(u, slides ? 1e-3 : exact ? 2e-4 : 5e-5);
+  ck_assert_double_le(u, slides ? 1e-3 : 5e-5);
   ck_assert_double_ge(u, slides ? 1e-4 : 0);
   ck_assert_double_le(rough, 1e-5);
 }

@@ -35,8 +35,8 @@
  * (1) what they do to faces, so that dt (a_f - F A a_f) goes through the faces
  * of grains that an exact yield holds. There w lacks it, by the part
  *   (1 - |u_s|/U) (1 - |u_f - u_s|^2/U^2),  U = 0.1 dt |g|,
- * neither factor below 0. p of the fluid keeps its own, which damps odd and
- * even pressures.
+ * neither factor below 0, at faces to leaves without grains, too. p of the
+ * fluid keeps its own, which damps odd and even pressures.
  *
  * Contact. The grains of a leaf lean on a face across the vertical by
  *   chi = min(1, p_s/(h/2 (rho_s - rho_f) alpha g)),

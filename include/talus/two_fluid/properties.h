@@ -42,8 +42,11 @@ double two_fluid_next_packing(const struct two_fluid *sim, int32_t i,
 /* Give leaves without grains the velocity of the grains around them, else that
  * of the fluid, and fill u_s. alpha is filled. Collective. */
 void two_fluid_calm(struct two_fluid *sim);
-/* Return how still the grains of leaf i are, 1: at rest; 0 where they or the
- * fluid past them move by 0.1 dt |g|, or where they carry nothing. */
+/* Return how slow the grains of leaf i are, 1: at rest; 0 where they or the
+ * fluid past them move by 0.1 dt |g|. */
+double two_fluid_slowness(const struct two_fluid *sim, int32_t i);
+/* Return that, less where they carry less than half their weight; 0 where they
+ * carry nothing. */
 double two_fluid_stillness(const struct two_fluid *sim, int32_t i);
 
 #endif

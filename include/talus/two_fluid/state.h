@@ -49,6 +49,7 @@ struct two_fluid {
   struct field *p;                         /* pressure, Pa */
   struct field *phi_p;                     /* plastic packing */
   struct field *X;                         /* of two_fluid_grains.h, Pa */
+  struct field *bed;                       /* packing of a bed; surface.h */
   /* part of the grains of a leaf that a tracer marks; slopes let it pass 0 and
    * 1 by a hundredth */
   struct field *tracer[PARAMS_MAX_TRACERS];
@@ -93,6 +94,7 @@ struct two_fluid {
   struct field *phi;     /* solid fraction of the bed in a leaf; surface.h */
   struct field *rest;    /* s of surface.h, 0 but at the surface, Pa */
   struct field *burden;  /* W of surface.h, Pa */
+  struct field *borne;   /* m of surface.h */
   struct field *lack;    /* p_s less its mean over a leaf, Pa; surface.h */
   struct field *carried; /* load over half the weight of a leaf, at most 1 */
   struct field *normal[DIM]; /* planes of c */

@@ -3,28 +3,41 @@
  *
  * The mean solid fraction alpha of a leaf that a bed fills in part is below
  * every packing that carries load, so the leaf has no strength, and a heap of
- * such leaves levels out. Here the bed in a leaf that rests on another one is
- * at rest under its own weight: its pressure in the middle is
+ * such leaves levels out. Here the bed in a leaf that rests on another one has
+ * a packing phi of its own, which its grains carry along, and fills c =
+ * alpha/phi of the leaf. What it weighs in its middle is
  *
- *   p_s = s alpha,  s = h (rho_s - rho_f) g/2,
+ *   L = s alpha,  s = h (rho_s - rho_f) g/2,
  *
- * its solid fraction phi that of P(phi) = s alpha, and it fills c = alpha/phi
- * of the leaf. Where alpha > phi it fills all of it and P(alpha) > s alpha, so
+ * of which its grains carry m L, m = P(phi)/L, at most 1, and the fluid in the
+ * pores the rest. Where alpha > phi it fills all of the leaf, so
  *
- *   P_surface(alpha) = max(P(alpha), s alpha)
+ *   P_surface(alpha) = max(P(alpha), m s alpha)
  *
- * rises and is convex like P, and beds on leaves are balanced as they are in
- * the continuum: the difference of p_s from leaf to leaf is the weight between
- * their middles, (alpha_0 + alpha_1)/2 of it. A leaf rests on a wall, or on one
- * below that carries the weight of half of its own grains; and it has fewer
- * grains above than it holds itself, which lie half a grain thick.
+ * rises and is convex like P, and beds on leaves that rest (m = 1) are balanced
+ * as they are in the continuum: the difference of p_s from leaf to leaf is the
+ * weight between their middles, (alpha_0 + alpha_1)/2 of it. A leaf rests on a
+ * wall, on a bed, or on a leaf below that carries the weight of half of its own
+ * grains; and it has fewer grains above than it holds itself, which lie half a
+ * grain thick.
+ *
+ * phi. Grains that shear get denser than they were before they carry their
+ * load again only as fast as fluid leaves them, and a thin front of them runs
+ * on it meanwhile. With j the volume flux of both, div u_s = div(u_s - j): the
+ * top of a bed sinks through the fluid by w (1 - m), w = (1 - phi)^2 (rho_s -
+ * rho_f) g alpha/K, its bottom by what the face there has, -r, so that
+ *
+ *   d phi/dt = phi/(c h) [w (1 - P(phi)/L) + r],
+ *
+ * implicit in phi. Fluid that drains at once (w large) gives m = 1. Leaves that
+ * do not rest have phi = alpha if that is a packing, else that which their
+ * grains have brought.
  *
  * On a slope the surface cuts two leaves of a column, one above the other. The
  * lower one rests, and carries the upper one if it is more than half full: it
  * has s alpha + W, W = 2 s alpha of the leaf above, and that one rests too,
  * however thin, as the bed goes on below it. Else the grains of the upper one
- * carry nothing, nothing holds them, and they slide off whatever the slope. c
- * is of alpha alone, so nothing else has to be carried or kept.
+ * carry nothing, nothing holds them, and they slide off whatever the slope.
  *
  * Across the vertical p_s is taken as the mean over the leaf, c p_s: what two
  * leaves filled by c_0 and c_1 push on each other with is (c_0^2 - c_1^2)/2 of
@@ -51,6 +64,11 @@ struct two_fluid;
 /* Set c, phi and s of leaves and the planes of the surface. alpha is filled.
  * Collective. */
 void two_fluid_find_surface(struct two_fluid *sim);
+/* Let the beds of a start in balance carry their load: by phi, or by the
+ * plastic packing of a dense start. alpha is filled. Collective. */
+void two_fluid_lay_beds(struct two_fluid *sim);
+/* Set the packing of beds at the end of dt, after transport. */
+void two_fluid_settle_beds(struct two_fluid *sim, double dt);
 /* Return the part of side s (2d lower, 2d + 1 upper) of leaf i that its bed
  * reaches: 1 unless the surface cuts the leaf. */
 double two_fluid_wetted(const struct two_fluid *sim, int32_t i, int s);

@@ -25,7 +25,10 @@
  * larger; with tau_f(u_f) alone in u_f* they flow below their slope of repose
  * (tests/mesh/test_two_fluid_slope.c). Forces are those of stresses on faces,
  * so that the momentum of the sum is kept whatever theta is; drag, pressures
- * and weight act on faces. */
+ * and weight act on faces. Leaves without grains keep the velocity of the
+ * grains around them (two_fluid_calm): they have no viscosity of their own, and
+ * their free fall would be a part of div u_s, and of the normal stress, at
+ * faces of the leaves beside them. */
 #ifndef TALUS_TWO_FLUID_VELOCITIES_H
 #define TALUS_TWO_FLUID_VELOCITIES_H
 
