@@ -64,7 +64,7 @@ struct granular_pressure {
   double ahead;             /* part of the rise of p that would hold R of a leaf
                                back alone, by which P' is taken ahead where
                                grains are compressed; 0: P' of nu */
-  double tolerance;         /* on max |R| */
+  double tolerance;         /* on max |R|; round-off passes */
   int max_newton, max_iterations;
   const struct granular_surface *surface; /* NULL: none */
   double *slope[DIM];                     /* [>= nleaves + nghosts] scratch */

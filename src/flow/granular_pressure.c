@@ -10,6 +10,8 @@
 
 /* The linear solves gain this factor on R. */
 static const double LINEAR_GAIN = 1e-2;
+/* R, a solid fraction, is no smaller than this but by luck. */
+static const double ROUND_OFF = 1e-15;
 /* Part of its grains that a leaf may give away in a step. */
 static const double MOST_GIVEN = 0.9;
 
@@ -165,7 +167,8 @@ static struct solve_stats newton(const struct granular_pressure *by,
   for (int32_t i = 0; i < mesh->nleaves; i++)
     by->mass[i] = 1 / slope_of(by, i, nu[i], p[i]);
   memset(q, 0, (size_t)mesh->ncells * sizeof *q);
-  const double tolerance = max2(LINEAR_GAIN * size, 0.1 * by->tolerance);
+  const double tolerance =
+      max2(LINEAR_GAIN * size, 0.1 * max2(by->tolerance, ROUND_OFF));
   const struct solve_stats stats =
       poisson_solve(mesh, by->hierarchy, by->alpha, by->mass, by->rho, by->rhs,
                     NEUMANN, tolerance, by->max_iterations, q);
@@ -198,7 +201,8 @@ struct granular_stats granular_pressure_solve(
   for (;; stats.newton++) {
     move(by, dt, p, u_f, flux);
     stats.residual = residual(by, dt, nu, flux);
-    if (stats.residual <= by->tolerance) stats.status = SOLVE_CONVERGED;
+    if (stats.residual <= max2(by->tolerance, ROUND_OFF))
+      stats.status = SOLVE_CONVERGED;
     if (stats.status == SOLVE_CONVERGED || stats.newton == by->max_newton ||
         !isfinite(stats.residual))
       break;

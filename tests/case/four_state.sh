@@ -82,6 +82,9 @@ ends 5 "$talus" run heavy.lua level=6 stop=0.8 reference= -o turned --quiet \
   --restart --max-steps 1
 books parts turned numerical
 
+# a tolerance below round-off asks for no more than that
+ends 5 "$talus" run $column tolerance=1e-16 -o exactly --quiet --max-steps 3
+
 # starts that cannot be, and one that would never end
 ends 2 "$talus" run $column K=1e5 stop=0.5 -o soft --quiet
 says 'begin at a solid fraction of .*nu_0 = 0.6 .*larger grains.K'
