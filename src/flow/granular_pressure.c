@@ -139,52 +139,72 @@ static double rise_alone(const struct granular_pressure *by, int32_t i) {
   return sum > 0 ? -by->rhs[i] * h * h / sum : 0;
 }
 
-/* Return P' of a leaf: where grains are compressed that hardly touch, that of a
- * pressure ahead, as far as nu - R reaches. */
+/* Return P' of a leaf whose own is `slope`: where grains are compressed that
+ * hardly touch, that of a pressure ahead, as far as nu - R reaches. */
 static double slope_of(const struct granular_pressure *by, int32_t i, double nu,
-                       double p) {
+                       double p, double slope) {
   const struct granular_material *m = &by->material;
   const double linear = nu - by->rhs[i];
-  double slope, there;
-  m->pressure(m->context, i, nu, &slope);
+  double there;
   slope = max2(slope, by->least_slope);
   if (!(by->ahead > 0 && linear > nu)) return slope;
   const double next = p + by->ahead * rise_alone(by, i);
   if (!(next - p > slope * (linear - nu))) return slope;
-  double at = linear;
-  if (m->pressure(m->context, i, at, &there) > next)
-    at = m->solid_fraction(m->context, i, next, nu, linear);
-  m->pressure(m->context, i, at, &there);
+  if (m->pressure(m->context, i, linear, &there) > next) {
+    const double at = m->solid_fraction(m->context, i, next, nu, linear);
+    m->pressure(m->context, i, at, &there);
+  }
   return max2(slope, there);
 }
 
-/* Take a Newton step from nu, p. */
+/* Add the change q of p to a leaf, whose mass is 1/P', and leave P' of its new
+ * nu in mass. */
+static void change_leaf(const struct granular_pressure *by, int32_t i, double q,
+                        double *nu, double *p) {
+  const struct granular_material *m = &by->material;
+  const double linear = *nu + by->mass[i] * q;
+  double there = m->pressure(m->context, i, linear, &by->mass[i]);
+  /* where P' was raised to least_slope, `linear` may still be below P^-1 */
+  if (q > 0 && there > *p + q) {
+    *nu = m->solid_fraction(m->context, i, *p + q, *nu, linear);
+    there = m->pressure(m->context, i, *nu, &by->mass[i]);
+  } else {
+    *nu = linear;
+  }
+  *p = there;
+}
+
+/* Take a Newton step from nu, p with P' in mass. */
 static struct solve_stats newton(const struct granular_pressure *by,
                                  double size, double *nu, double *p) {
   const struct mesh *mesh = by->mesh;
-  const struct granular_material *m = &by->material;
   double *q = by->change;
   for (int32_t i = 0; i < mesh->nleaves; i++)
-    by->mass[i] = 1 / slope_of(by, i, nu[i], p[i]);
+    by->mass[i] = 1 / slope_of(by, i, nu[i], p[i], by->mass[i]);
   memset(q, 0, (size_t)mesh->ncells * sizeof *q);
   const double tolerance =
       max2(LINEAR_GAIN * size, 0.1 * max2(by->tolerance, ROUND_OFF));
   const struct solve_stats stats =
       poisson_solve(mesh, by->hierarchy, by->alpha, by->mass, by->rho, by->rhs,
                     NEUMANN, tolerance, by->max_iterations, q);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    double unused;
-    const double linear = nu[i] + by->mass[i] * q[i];
-    /* where P' was raised to least_slope, `linear` may still be below P^-1 */
-    const bool beyond =
-        q[i] > 0 && m->pressure(m->context, i, linear, &unused) > p[i] + q[i];
-    nu[i] = beyond
-                ? m->solid_fraction(m->context, i, p[i] + q[i], nu[i], linear)
-                : linear;
-    p[i] = m->pressure(m->context, i, nu[i], &unused);
-  }
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    change_leaf(by, i, q[i], &nu[i], &p[i]);
   mesh_touch(mesh, p);
   return stats;
+}
+
+/* Begin with nu and p of the last step, and P' in mass. */
+static void begin(const struct granular_pressure *by, const double *u_f,
+                  double *nu, double *p) {
+  const struct mesh *mesh = by->mesh;
+  const struct granular_material *m = &by->material;
+  memcpy(by->u_start, u_f, (size_t)mesh->nfaces_all * sizeof *u_f);
+  memcpy(nu, by->nu_old, (size_t)mesh->nleaves * sizeof *nu);
+  memcpy(p, by->p_old, (size_t)mesh->nleaves * sizeof *p);
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    m->pressure(m->context, i, nu[i], &by->mass[i]);
+  for (int d = 0; d < DIM; d++)
+    granular_slopes(mesh, d, by->nu_old, by->slope[d]);
 }
 
 struct granular_stats granular_pressure_solve(
@@ -192,12 +212,7 @@ struct granular_stats granular_pressure_solve(
     double *nu, double *flux) {
   const struct mesh *mesh = by->mesh;
   struct granular_stats stats = {.status = SOLVE_STALLED};
-  memcpy(by->u_start, u_f, (size_t)mesh->nfaces_all * sizeof *u_f);
-  memcpy(nu, by->nu_old, (size_t)mesh->nleaves * sizeof *nu);
-  memcpy(p, by->p_old, (size_t)mesh->nleaves * sizeof *p);
-  for (int d = 0; d < DIM; d++) {
-    granular_slopes(mesh, d, by->nu_old, by->slope[d]);
-  }
+  begin(by, u_f, nu, p);
   for (;; stats.newton++) {
     move(by, dt, p, u_f, flux);
     stats.residual = residual(by, dt, nu, flux);
