@@ -103,6 +103,7 @@ static void add_bulk(const struct mesh *mesh, const struct viscosity *viscosity,
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
       const double lambda =
           viscosity->kappa_f[f] - 2. / 3 * viscosity->eta_f[f];
+      if (lambda == 0) continue; /* as between leaves without grains */
       const double part =
           mesh_slope(mesh, f, lambda * face_divergence(mesh, u, d, f));
       tau[d][f] += part;
