@@ -58,10 +58,8 @@ void four_state_closure_release(struct four_state_closure *closure);
  * T >= 0. From a table of cubic pieces, to 1e-7. */
 double four_state_pressure(const struct four_state_closure *closure, double nu,
                            double T, double *slope);
-/* Return p_K and p_E, Pa. */
+/* Return p_K, Pa. */
 double four_state_kinetic_pressure(const struct four_state_closure *closure,
-                                   double nu, double T);
-double four_state_contact_pressure(const struct four_state_closure *closure,
                                    double nu, double T);
 /* Return the nu of a pressure p > 0 at T, to 1e-14. from: any nu with a
  * pressure below p; guess: where to begin, best a little above. */

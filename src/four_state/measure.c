@@ -146,7 +146,7 @@ void four_state_find_states(struct four_state *sim, double *contact,
   double *u[DIM];
   field_arrays(sim->u, u);
   field_fill_many(mesh, DIM, sim->u);
-  four_state_properties(sim);
+  four_state_contacts(sim);
   four_state_shear(sim, u);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double p = sim->p->v[i];

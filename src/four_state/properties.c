@@ -2,6 +2,7 @@
 #include "talus/four_state/properties.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "talus/four_state/state.h"
 #include "talus/minmax.h"
@@ -138,25 +139,54 @@ static void find_skin(struct four_state *sim) {
   scratch_give(&sim->scratch, __func__);
 }
 
-void four_state_properties(struct four_state *sim) {
+/* Are p, p_E and the skin those of nu and T? Remember these. */
+static bool are_known(struct four_state *sim) {
   const struct mesh *mesh = sim->grid.mesh;
+  const size_t size = (size_t)mesh->nleaves * sizeof(double);
+  double *nu = sim->known[0]->v, *T = sim->known[1]->v;
+  const bool same = sim->known_on == mesh->revision &&
+                    memcmp(nu, sim->nu->v, size) == 0 &&
+                    memcmp(T, sim->T->v, size) == 0;
+  memcpy(nu, sim->nu->v, size);
+  memcpy(T, sim->T->v, size);
+  sim->known_on = mesh->revision;
+  return !(mesh_max(mesh, same ? 0 : 1) > 0);
+}
+
+void four_state_contacts(struct four_state *sim) {
+  const struct four_state_closure *c = &sim->closure;
+  if (are_known(sim)) return;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double nu = sim->nu->v[i], T = sim->T->v[i];
+    sim->p->v[i] = sim->p_E->v[i] = 0;
+    if (!four_state_has_grains(sim, i)) continue;
+    const double p = four_state_pressure(c, nu, T, NULL);
+    sim->p->v[i] = p;
+    sim->p_E->v[i] = max2(p - four_state_kinetic_pressure(c, nu, T), 0);
+  }
+  find_touches(sim);
+  find_skin(sim);
+}
+
+static void set_kinetic(struct four_state *sim) {
   const struct four_state_closure *c = &sim->closure;
   const double scale = c->param[LEE_HUANG_RHO_D] * c->param[LEE_HUANG_D];
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double nu = sim->nu->v[i], T = sim->T->v[i];
-    sim->p->v[i] = sim->p_E->v[i] = sim->mu_K->v[i] = sim->lambda_K->v[i] = 0;
-    if (!four_state_has_grains(sim, i)) continue;
-    const struct four_state_numbers k = four_state_numbers(c, nu);
-    sim->p->v[i] = four_state_pressure(c, nu, T, NULL);
-    sim->p_E->v[i] = four_state_contact_pressure(c, nu, T);
-    sim->mu_K->v[i] = scale * sqrt(T) * k.mu;
-    sim->lambda_K->v[i] = scale * sqrt(T) * k.lambda;
+  for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+    const double s = sqrt(sim->T->v[i]);
+    sim->mu_K->v[i] = sim->lambda_K->v[i] = 0;
+    if (!(s > 0) || !four_state_has_grains(sim, i)) continue;
+    const struct four_state_numbers k = four_state_numbers(c, sim->nu->v[i]);
+    sim->mu_K->v[i] = scale * s * k.mu;
+    sim->lambda_K->v[i] = scale * s * k.lambda;
   }
+}
+
+void four_state_properties(struct four_state *sim) {
+  four_state_contacts(sim);
+  set_kinetic(sim);
   fill_positive(sim);
   set_upper(sim);
   set_mobility(sim);
-  find_touches(sim);
-  find_skin(sim);
 }
 
 /* Return the pressure of contact on a wall, with the weight of the grains that

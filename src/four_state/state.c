@@ -102,6 +102,8 @@ static void add_made(struct four_state *sim) {
   sim->skin = skin_new();
   sim->still = add(sim, "still", "1", "", NULL, false);
   sim->touches = add(sim, "touches", "1", "", NULL, false);
+  sim->known[0] = add(sim, "known_fraction", "1", "", NULL, false);
+  sim->known[1] = add(sim, "known_temperature", "m^2/s^2", "", NULL, false);
   sim->mobility_f = add_face(sim, "mobility");
   sim->thrust_f = add_face(sim, "thrust");
   sim->eta_f = add_face(sim, "face_viscosity");

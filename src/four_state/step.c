@@ -126,6 +126,7 @@ static void press(struct four_state *sim, double dt, double *a_f,
   four_state_face_acceleration(sim, sim->p->v, a_f);
   four_state_acceleration(sim, a_f, a + DIM);
   memcpy(sim->p->v, p, (size_t)mesh->ncells * sizeof *p);
+  sim->known_on = 0;
   four_state_face_acceleration(sim, sim->p->v, a_f);
   four_state_acceleration(sim, a_f, a);
   sim->impact += four_state_stored(sim, sim->nu->v) -

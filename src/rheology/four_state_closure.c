@@ -225,13 +225,6 @@ double four_state_kinetic_pressure(const struct four_state_closure *c,
   return c->param[LEE_HUANG_RHO_D] * T * p_K.value;
 }
 
-double four_state_contact_pressure(const struct four_state_closure *c,
-                                   double nu, double T) {
-  return fmax(four_state_pressure(c, nu, T, NULL) -
-                  four_state_kinetic_pressure(c, nu, T),
-              0);
-}
-
 double four_state_elastic(const struct four_state_closure *c, double nu) {
   if (nu <= c->param[LEE_HUANG_NU_MIN]) return 0;
   return is_in_table(c, nu) ? look_up(c, nu, ELASTIC).value : elastic_of(c, nu);

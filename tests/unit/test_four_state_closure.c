@@ -51,7 +51,7 @@ START_TEST(plane_shear_is_the_closed_form) {
   const double T =
       four_state_temperature(&c, nu, 1, 0.5 * gamma * gamma, 0, 1e6, NULL);
   const double p = four_state_pressure(&c, nu, T, NULL);
-  const double p_E = four_state_contact_pressure(&c, nu, T);
+  const double p_E = p - four_state_kinetic_pressure(&c, nu, T);
   const double d = c.param[LEE_HUANG_D], rho = c.param[LEE_HUANG_RHO_D];
   const double mu_K = rho * d * sqrt(T) * four_state_numbers(&c, nu).mu;
   const double tau =

@@ -25,6 +25,8 @@
 
 struct four_state;
 
+/* Set p and p_E of leaves, and the skin. Collective. */
+void four_state_contacts(struct four_state *sim);
 /* Fill nu and set p, p_E, mu_K, lambda_K (filled), the masses and the skin.
  * Collective. */
 void four_state_properties(struct four_state *sim);

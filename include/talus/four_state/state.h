@@ -55,9 +55,11 @@ struct four_state {
                                     grains that touch, at most 1 */
   bool exact;                    /* the grains yield exactly, else by n */
   struct yield yield;
-  struct skin *skin;     /* of leaves in which grains touch */
-  struct field *touches; /* how well they do, 1 within a bed */
-  struct field *still;   /* 1 in leaves at rest, 0 in those that move */
+  struct skin *skin;      /* of leaves in which grains touch */
+  struct field *touches;  /* how well they do, 1 within a bed */
+  struct field *known[2]; /* nu and T of p, p_E, touches and skin */
+  uint64_t known_on;      /* mesh of these, 0: p is another */
+  struct field *still;    /* 1 in leaves at rest, 0 in those that move */
   struct scratch scratch;
 
   /* For output, on demand */
