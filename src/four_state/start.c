@@ -224,7 +224,7 @@ struct four_state *four_state_new(const struct params *params,
         params->size * params->trees[axis], packed, sim);
   const struct depths *fill = balance ? &depths : NULL;
   if (params->ncriteria > 0) {
-    adapt_to_state(sim, fill, axis, 0);
+    adapt_to_state(sim, NULL, axis, 0); /* nearly as with depths */
     adapt_to_state(sim, fill, axis, 3);
   } else {
     fill_state(sim, fill, axis, 3);

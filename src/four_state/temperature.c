@@ -12,7 +12,7 @@
 static const double MOST_GIVEN = 0.25 / DIM;
 /* Tolerance of conduction, relative to the largest nu T; leaves below
  * LEAST_STORE of nu count as that. */
-static const double TOLERANCE = 1e-8, LEAST_STORE = 1e-6;
+static const double TOLERANCE = 1e-7, LEAST_STORE = 1e-6;
 
 double four_state_fluctuating(const struct four_state *sim) {
   const struct mesh *mesh = sim->grid.mesh;
