@@ -43,8 +43,9 @@ struct four_state_closure {
   double p_D[2];  /* p_D/(rho_d T) at nu_D and its slope */
   double p_K[2];  /* p_K/(rho_d T) at nu_0 and its slope */
   double p_ES[2]; /* p_ES at nu_max and its slope, Pa */
-  /* Curves and their slopes at nodes every 1/per_nu up to nu_max; owned */
-  double (*table)[8];
+  /* Curves and their slopes at nodes every 1/per_nu up to nu_max, those of p in
+   * the first; owned */
+  double (*table[2])[4];
   double per_nu;
 };
 

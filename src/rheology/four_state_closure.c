@@ -17,9 +17,9 @@ static const double POLE_MARGIN = 1e-3;
 /* Pieces of the table: a hundred where p_D, a power of nu_0 - nu, is steepest.
  */
 enum { PIECES = 1 << 16 };
-/* Curves of the table, each with its slope: max(p_K, p_D)/(rho_d T), p_ES,
- * p_K/(rho_d T), elastic energy. */
-enum { HOT = 0, PACKING = 2, KINETIC = 4, ELASTIC = 6 };
+/* Curves of the first table and of the second, each with its rise over a piece:
+ * max(p_K, p_D)/(rho_d T), p_ES; p_K/(rho_d T), elastic energy. */
+enum { HOT = 0, PACKING = 2, KINETIC = 4, ELASTIC = 6, WIDTH = 4 };
 
 /* A function of nu with its derivative. */
 struct slope {
@@ -133,20 +133,29 @@ static double elastic_of(const struct four_state_closure *c, double nu) {
   return half * sum;
 }
 
-static void put(double node[2], struct slope of) {
-  node[0] = of.value, node[1] = of.slope;
+/* Return curve `curve` of node k. */
+static inline double *at_node(const struct four_state_closure *c, int k,
+                              int curve) {
+  return c->table[curve / WIDTH][k] + curve % WIDTH;
 }
 
-static void make_table(struct four_state_closure *c) {
-  c->table = mem_alloc(PIECES + 1, sizeof *c->table);
+static void put(struct four_state_closure *c, int k, int curve,
+                struct slope of) {
+  double *node = at_node(c, k, curve);
+  node[0] = of.value, node[1] = of.slope / c->per_nu;
+}
+
+static void make_tables(struct four_state_closure *c) {
+  for (int t = 0; t < 2; t++)
+    c->table[t] = mem_alloc(PIECES + 1, sizeof *c->table[t]);
   for (int k = 0; k <= PIECES; k++) {
     const double nu = k / c->per_nu;
     struct slope p_K;
     const struct slope hot = hot_of(c, nu, &p_K), p_ES = packing_of(c, nu);
     const struct slope elastic = {elastic_of(c, nu),
                                   nu > 0 ? p_ES.value / (nu * nu) : 0};
-    put(c->table[k] + HOT, hot), put(c->table[k] + KINETIC, p_K);
-    put(c->table[k] + PACKING, p_ES), put(c->table[k] + ELASTIC, elastic);
+    put(c, k, HOT, hot), put(c, k, KINETIC, p_K);
+    put(c, k, PACKING, p_ES), put(c, k, ELASTIC, elastic);
   }
 }
 
@@ -168,31 +177,27 @@ const char *four_state_closure_init(struct four_state_closure *c,
   c->p_K[0] = p_K.value, c->p_K[1] = p_K.slope;
   c->p_ES[0] = p_ES.value, c->p_ES[1] = p_ES.slope;
   c->per_nu = PIECES / param[LEE_HUANG_NU_MAX];
-  make_table(c);
+  make_tables(c);
   return NULL;
 }
 
 void four_state_closure_release(struct four_state_closure *c) {
-  mem_free(c->table);
-  c->table = NULL;
+  for (int t = 0; t < 2; t++) {
+    mem_free(c->table[t]);
+    c->table[t] = NULL;
+  }
 }
 
-/* Give the cubic between two nodes whose values and slopes are v[0], v[1], in
- * steps of 1/per. */
-static inline struct slope cubic(const double here[2], const double next[2],
-                                 double t, double per) {
-  const double rise = next[0] - here[0], m0 = here[1] / per, m1 = next[1] / per;
-  const double c2 = 3 * rise - 2 * m0 - m1, c3 = m0 + m1 - 2 * rise;
-  return (struct slope){here[0] + t * (m0 + t * (c2 + t * c3)),
-                        per * (m0 + t * (2 * c2 + 3 * t * c3))};
-}
-
-/* Look one curve of the table up; nu < nu_max. */
+/* Look one curve up; nu < nu_max. A cubic between two nodes. */
 static inline struct slope look_up(const struct four_state_closure *c,
                                    double nu, int curve) {
   const double at = nu * c->per_nu;
   const int k = (int)at;
-  return cubic(c->table[k] + curve, c->table[k + 1] + curve, at - k, c->per_nu);
+  const double *here = at_node(c, k, curve), *next = at_node(c, k + 1, curve);
+  const double rise = next[0] - here[0], m0 = here[1], m1 = next[1];
+  const double t = at - k, c2 = 3 * rise - 2 * m0 - m1, c3 = m0 + m1 - 2 * rise;
+  return (struct slope){here[0] + t * (m0 + t * (c2 + t * c3)),
+                        c->per_nu * (m0 + t * (2 * c2 + 3 * t * c3))};
 }
 
 static inline bool is_in_table(const struct four_state_closure *c, double nu) {
