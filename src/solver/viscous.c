@@ -25,29 +25,49 @@ struct context {
   const struct bc *const *bc;
 };
 
-/* Stress on face f of direction d: component e into tau[e][f]. */
-static inline void face_stress(const struct mesh *mesh, const double *eta_f,
-                               double *const u[DIM], double *const tau[DIM],
-                               int32_t f, int d) {
-  const int32_t *node = mesh->face_node[f];
+/* Give the nodes at both ends of the lines along axis e through the nodes of
+ * face f of axis d: end[0] and end[1] of the lower one, then of the upper. */
+static inline void line_ends(const struct mesh *mesh, int32_t f, int d, int e,
+                             int32_t end[4]) {
   const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
+  const int32_t over = stencil_step(d), step = stencil_step(e);
+  const int32_t *at =
+      stencil + STENCIL_CENTRE -
+      (mesh->face_node[f][0] == stencil[STENCIL_CENTRE] ? 0 : over);
+  end[0] = at[-step], end[1] = at[step];
+  end[2] = at[over - step], end[3] = at[over + step];
+}
+
+static inline double difference(const double *v, const int32_t end[4]) {
+  return v[end[1]] - v[end[0]] + v[end[3]] - v[end[2]];
+}
+
+/* Stress on face f of direction d: component e into tau[e][f]. The normal one
+ * has lambda div u, lambda = kappa - 2 eta / 3, but for the hoop; kept: NULL,
+ * or where that goes besides. */
+static inline __attribute__((always_inline)) void face_stress(
+    const struct mesh *mesh, const double *eta_f, const double *kappa_f,
+    double *const u[DIM], double *const tau[DIM], double *kept, int32_t f,
+    int d) {
+  const int32_t *node = mesh->face_node[f];
   const double eta = mesh_slope(mesh, f, eta_f[f]);
-  const double *ud = u[d];
-  const int low = node[0] == stencil[STENCIL_CENTRE]
-                      ? STENCIL_CENTRE
-                      : STENCIL_CENTRE - stencil_step(d);
+  const double across = u[d][node[1]] - u[d][node[0]];
+  double divergence = across;
   for (int e = 0; e < DIM; e++) {
-    const double du = u[e][node[1]] - u[e][node[0]];
-    if (e == d) {
-      tau[e][f] = 2 * eta * du;
-      continue;
-    }
-    const int32_t *at = stencil + low, step = stencil_step(e);
-    const int32_t over = stencil_step(d);
-    const double dv = ud[at[step]] - ud[at[-step]] + ud[at[over + step]] -
-                      ud[at[over - step]];
-    tau[e][f] = eta * (du + 0.25 * dv);
+    int32_t end[4];
+    if (e == d) continue;
+    line_ends(mesh, f, d, e, end);
+    const double shear =
+        u[e][node[1]] - u[e][node[0]] + 0.25 * difference(u[d], end);
+    if (kappa_f) divergence += 0.25 * difference(u[e], end);
+    tau[e][f] = eta * shear;
   }
+  tau[d][f] = 2 * eta * across;
+  if (!kappa_f) return;
+  const double lambda = kappa_f[f] - 2. / 3 * eta_f[f];
+  const double bulk = mesh_slope(mesh, f, lambda * divergence);
+  tau[d][f] += bulk;
+  if (kept) kept[f] = bulk;
 }
 
 /* Beside the surface of the grains. */
@@ -67,49 +87,20 @@ static void skin_stress(const struct mesh *mesh, const double *eta_f,
   }
 }
 
-/* h div u at face f of axis d, as the stress sees it. */
-static double face_divergence(const struct mesh *mesh, double *const u[DIM],
-                              int d, int32_t f) {
-  const int32_t *node = mesh->face_node[f];
-  const int32_t *stencil = mesh->stencil[mesh->face_owner[f]];
-  const int low = node[0] == stencil[STENCIL_CENTRE]
-                      ? STENCIL_CENTRE
-                      : STENCIL_CENTRE - stencil_step(d);
-  const int32_t *at = stencil + low, over = stencil_step(d);
-  double sum = u[d][node[1]] - u[d][node[0]];
-  for (int e = 0; e < DIM; e++) {
-    const int32_t step = stencil_step(e);
-    if (e == d) continue;
-    sum += 0.25 * (u[e][at[step]] - u[e][at[-step]] + u[e][at[over + step]] -
-                   u[e][at[over - step]]);
-  }
-  return sum;
-}
-
-/* Set the hoop stress around the axis. */
-static void hoop_stress(const struct mesh *mesh, const double *eta_f,
-                        const double *u_r, double *tau) {
+/* Set the hoop stress around the axis, where tau has lambda times the rest of
+ * div u if there is a kappa, and add the hoop's part to the normal stress. */
+static void hoop_stress(const struct mesh *mesh,
+                        const struct viscosity *viscosity, const double *u_r,
+                        double *const tau[]) {
+  const double *eta_f = viscosity->eta_f, *kappa_f = viscosity->kappa_f;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      tau[f] = 2 * eta_f[f] * mesh_face_hoop(mesh, u_r, f, d);
-    }
-  }
-}
-
-/* Add (kappa - 2 eta / 3) div u to the normal stresses. */
-static void add_bulk(const struct mesh *mesh, const struct viscosity *viscosity,
-                     double *const u[DIM], double *const tau[DIM]) {
-  for (int d = 0; d < DIM; d++) {
-    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double lambda =
-          viscosity->kappa_f[f] - 2. / 3 * viscosity->eta_f[f];
-      if (lambda == 0) continue; /* as between leaves without grains */
-      const double part =
-          mesh_slope(mesh, f, lambda * face_divergence(mesh, u, d, f));
-      tau[d][f] += part;
-      if (!mesh_is_axisymmetric(mesh)) continue;
-      const double hoop = lambda * mesh_face_hoop(mesh, u[0], f, d);
-      tau[d][f] += hoop, tau[HOOP][f] += part + hoop;
+      const double rate = mesh_face_hoop(mesh, u_r, f, d);
+      const double rest = kappa_f ? tau[HOOP][f] : 0;
+      tau[HOOP][f] = 2 * eta_f[f] * rate;
+      if (!kappa_f) continue;
+      const double hoop = (kappa_f[f] - 2. / 3 * eta_f[f]) * rate;
+      tau[d][f] += hoop, tau[HOOP][f] += rest + hoop;
     }
   }
 }
@@ -117,17 +108,19 @@ static void add_bulk(const struct mesh *mesh, const struct viscosity *viscosity,
 /* Set the stress on faces, filled; tau [nstresses]. */
 static void stress(const struct mesh *mesh, const struct viscosity *viscosity,
                    double *const u[DIM], double *const tau[]) {
-  const double *eta_f = viscosity->eta_f;
+  const double *eta_f = viscosity->eta_f, *kappa_f = viscosity->kappa_f;
   const struct skin *skin = viscosity->skin;
-#pragma GCC unroll 3 /* so that d is known in the loop over faces */
+  const bool rings = mesh_is_axisymmetric(mesh);
+#pragma GCC unroll 3 /* so that d is known in the loops over faces */
   for (int d = 0; d < DIM; d++) {
-    for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      face_stress(mesh, eta_f, u, tau, f, d);
-    }
+    const int32_t begin = mesh->face_begin[d], end = mesh->face_begin[d + 1];
+    for (int32_t f = begin; f < end && !kappa_f; f++)
+      face_stress(mesh, eta_f, NULL, u, tau, NULL, f, d);
+    for (int32_t f = begin; f < end && kappa_f; f++)
+      face_stress(mesh, eta_f, kappa_f, u, tau, rings ? tau[HOOP] : NULL, f, d);
   }
   if (skin) skin_stress(mesh, eta_f, skin, u, tau);
-  if (mesh_is_axisymmetric(mesh)) hoop_stress(mesh, eta_f, u[0], tau[HOOP]);
-  if (viscosity->kappa_f) add_bulk(mesh, viscosity, u, tau);
+  if (rings) hoop_stress(mesh, viscosity, u[0], tau);
   mesh_fill_faces(mesh, nstresses(mesh), tau);
 }
 
