@@ -48,6 +48,8 @@ struct skin_leaf {
 struct skin {
   bool grains_only; /* w_k = c c_k of both ends of line k, no stress is left
                        out: what grains do depends on grains alone */
+  double slight;    /* multigrid cycles leave out what is less than this part
+                       of the diagonal; 0: nothing */
   int32_t n, room;
   struct skin_face *face; /* [n], those with weights; owned */
   int32_t nleaves, leaf_room;

@@ -14,6 +14,9 @@ static const double LIGHT = 1e-12;
 /* Weights of leaves in tangential differences where grains do not touch and
  * where there are none. */
 static const double LOOSE = 1e-3, NO_GRAINS = 1e-6;
+/* Part of the diagonal of a leaf's viscous equation below which the cycles
+ * leave its weights out: loose grains have little friction. */
+static const double SLIGHT = 0.01;
 /* Masses below this are none. */
 static const double NO_MASS = 1e-30;
 
@@ -135,6 +138,7 @@ static void find_skin(struct four_state *sim) {
     m[i] = min2(max2(m[i], NO_GRAINS), 1);
   sim->skin->n = 0; /* it may be that of an earlier mesh */
   sim->skin->grains_only = true;
+  sim->skin->slight = SLIGHT;
   skin_find(mesh, m, 1, sim->skin);
   scratch_give(&sim->scratch, __func__);
 }

@@ -33,13 +33,14 @@ static void list_plane(const struct hierarchy *h, int32_t i, int a, int b,
   }
 }
 
-/* Add to a row what the weights change at the face beyond which lies node 4 +
- * `over`, if that is much; the lines go along `step`. */
-static bool add_face(const double m[9], bool grains_only, double w, int over,
-                     int step, double row[9]) {
+/* Add to a row what the weights change at the face of conductance w beyond
+ * which lies node 4 + `over`, unless all is less than `least`; the lines go
+ * along `step`. */
+static bool add_face(const double m[9], bool grains_only, double w,
+                     double least, int over, int step, double row[9]) {
   const double grains = min2(m[4], m[4 + over]);
   double weight[4], sum = 0, most = 0;
-  if (w == 0) return false;
+  if (!(w > least)) return false;
   for (int k = 0; k < 4; k++) {
     const int end = 4 + (k < 2 ? 0 : over) + (k & 1 ? step : -step);
     const int base = 4 + (k < 2 ? 0 : over);
@@ -51,7 +52,7 @@ static bool add_face(const double m[9], bool grains_only, double w, int over,
     weight[k] = weight[k] * scale - 0.25;
     most = max2(most, fabs(weight[k]));
   }
-  if (most < ODD_WEIGHT) return false;
+  if (most < ODD_WEIGHT || w * most < least) return false;
   for (int k = 0; k < 4; k++) {
     const int base = 4 + (k < 2 ? 0 : over);
     const double a = ((over > 0) == (k & 1) ? w : -w) * weight[k];
@@ -61,11 +62,18 @@ static bool add_face(const double m[9], bool grains_only, double w, int over,
   return true;
 }
 
-/* Fill the rows of a node, m being that of its stencil; false if nothing
- * changes. */
+/* Fill the diagonal and rows of a node, m being that of its stencil; false if
+ * nothing changes. */
 static bool set_rows(const struct hierarchy *h, const double *m,
-                     bool grains_only, struct skin_node *node) {
+                     const struct skin *skin, struct skin_node *node) {
+  const bool grains_only = skin->grains_only;
   bool odd = false;
+  double least[DIM];
+  for (int c = 0; c < DIM; c++) {
+    const double inverse = h->inverse[c][node->slot];
+    node->diagonal[c] = inverse > 0 ? 1 / inverse : 1;
+    least[c] = skin->slight * node->diagonal[c];
+  }
   memset(node->row, 0, sizeof node->row);
   for (int a = 0; a < DIM; a++) {
     for (int b = a + 1; b < DIM; b++) {
@@ -79,8 +87,12 @@ static bool set_rows(const struct hierarchy *h, const double *m,
       for (int s = -1; s <= 1; s += 2) {
         const double wa = (double)h->w[2 * a + (s > 0)][node->slot];
         const double wb = (double)h->w[2 * b + (s > 0)][node->slot];
-        odd = add_face(near, grains_only, wb, 3 * s, 1, node->row[p][0]) || odd;
-        odd = add_face(near, grains_only, wa, s, 3, node->row[p][1]) || odd;
+        odd = add_face(near, grains_only, wb, least[a], 3 * s, 1,
+                       node->row[p][0]) ||
+              odd;
+        odd =
+            add_face(near, grains_only, wa, least[b], s, 3, node->row[p][1]) ||
+            odd;
       }
     }
   }
@@ -106,12 +118,9 @@ static void invert(double a[DIM][DIM], double inverse[DIM][DIM]) {
 }
 
 /* Invert the block of a node, once its rows are known. */
-static void set_block(const struct hierarchy *h, struct skin_node *node) {
+static void set_block(struct skin_node *node) {
   double block[DIM][DIM];
-  for (int c = 0; c < DIM; c++) {
-    const double inverse = h->inverse[c][node->slot];
-    node->diagonal[c] = block[c][c] = inverse > 0 ? 1 / inverse : 1;
-  }
+  for (int c = 0; c < DIM; c++) block[c][c] = node->diagonal[c];
   for (int a = 0; a < DIM; a++) {
     for (int b = a + 1; b < DIM; b++) {
       block[a][b] = -node->row[pair_number(a, b)][0][4];
@@ -150,14 +159,14 @@ static void sort_leaves(const struct hierarchy *h, const struct skin *skin,
 
 /* Add the node of a leaf if it has a face with odd weights. */
 static void add_node(struct hierarchy *h, const struct skin_leaf *leaf,
-                     bool grains_only) {
+                     const struct skin *skin) {
   const struct level *level = &h->level[h->mesh->level[leaf->leaf]];
   struct skin_node *node = &h->skin_node[h->nskin];
   node->slot = h->leaf_slot[leaf->leaf];
   const int32_t family = (node->slot - level->begin) % level->nfamilies;
   node->parent = h->family_parent[level->family_begin + family];
-  if (!set_rows(h, leaf->grains, grains_only, node)) return;
-  set_block(h, node);
+  if (!set_rows(h, leaf->grains, skin, node)) return;
+  set_block(node);
   h->nskin++;
 }
 
@@ -183,7 +192,7 @@ void skin_nodes_set(struct hierarchy *h, const struct skin *skin) {
   for (int q = 0; q < nruns; q++) {
     const int32_t end = h->skin_begin[q];
     h->skin_begin[q] = h->nskin;
-    for (; k < end; k++) add_node(h, sorted[k], skin->grains_only);
+    for (; k < end; k++) add_node(h, sorted[k], skin);
   }
   h->skin_begin[nruns] = h->nskin;
   mem_free(sorted);
