@@ -32,10 +32,11 @@ static double pressure_at_rest(const struct two_fluid *sim, int32_t i,
   return two_fluid_pressure(&sim->closure, alpha, &with, NULL);
 }
 
-/* Return P of a bed of packing phi in leaf i. */
+/* Return P of a bed of packing phi in leaf i, but for its granular temperature.
+ */
 static double pressure_of(const struct two_fluid *sim, int32_t i, double phi) {
-  const struct two_fluid_frozen with = {
-      .phi_p = sim->phi_p->v[i], .X = sim->X->v[i], .Theta = sim->Theta->v[i]};
+  const struct two_fluid_frozen with = {.phi_p = sim->phi_p->v[i],
+                                        .X = sim->X->v[i]};
   return two_fluid_pressure(&sim->closure, phi, &with, NULL);
 }
 
