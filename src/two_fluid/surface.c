@@ -205,7 +205,8 @@ static double sunk(const struct two_fluid *sim, int32_t i, int below,
 }
 
 /* Return the packing of the bed in leaf i after dt: it gets denser as its top
- * sinks through the fluid, and looser as its bottom does. */
+ * sinks through the fluid, and looser as its bottom does, or at once where it
+ * would press with more than its load. */
 static double next_packing(const struct two_fluid *sim, int32_t i, int below,
                            double dt) {
   static const double ENOUGH = 1e-12;
@@ -218,8 +219,9 @@ static double next_packing(const struct two_fluid *sim, int32_t i, int below,
   double low = loosest_bed(sim, i), high = two_fluid_densest(&sim->closure);
   while (high - low > ENOUGH) {
     const double phi = 0.5 * (low + high);
-    const double top = most * (1 - pressure_of(sim, i, phi) / load);
-    if (phi - bed > bed / (part * h) * (top - bottom))
+    const double p = pressure_of(sim, i, phi);
+    const double top = most * (1 - p / load);
+    if (p > load || phi - bed > bed / (part * h) * (top - bottom))
       high = phi;
     else
       low = phi;

@@ -29,9 +29,12 @@
  *
  *   d phi/dt = phi/(c h) [w (1 - P(phi)/L) + r],
  *
- * implicit in phi. Fluid that drains at once (w large) gives m = 1. Leaves that
- * do not rest have phi = alpha if that is a packing, else that which their
- * grains have brought.
+ * implicit in phi. Fluid that drains at once (w large) gives m = 1. Grains that
+ * dilate expand at once, to P(phi) = L: suction that would hold them back is
+ * not felt (m <= 1; as P(phi) of the last step, m > 1 bursts), and if they
+ * stayed dense their pressure would jump as the leaf fills. Leaves that do not
+ * rest have phi = alpha if that is a packing, else that which their grains have
+ * brought.
  *
  * On a slope the surface cuts two leaves of a column, one above the other. The
  * lower one rests, and carries the upper one if it is more than half full: it
@@ -45,9 +48,10 @@
  * surface was twice as steep or more. With W the sum over both leaves of a
  * column is (c_0 + c_1)^2/2 of it.
  *
- * The key grains.surface turns this on. It is not the default: heaps stand
- * (tests/mesh/test_two_fluid_surface.c), but grains at the top of flat beds,
- * some leaves wide, move sideways by 0.1 mm/s (docs/notes/two_fluid.md).
+ * The key grains.surface turns this on. It is not the default: with an exact
+ * yield heaps and flat beds stand and collapses run as far as they should
+ * (docs/notes/two_fluid.md), but fluidised beds and suspensions have not been
+ * run with it.
  *
  * Faces of such a leaf pass phi times the part of the volume swept that the
  * plane of c fills (vof.h): nothing where the bed does not reach.
