@@ -10,18 +10,13 @@
 #include "talus/minmax.h"
 #include "talus/viscous.h"
 
-/* Friction is found PICARD times, with the shear rates of the last solve, and
- * with an exact yield at most MOST_SOLVES times. */
-enum { PICARD = 2, MOST_SOLVES = 8 };
+/* Friction is found PICARD times, with the shear rates of the last solve. */
+enum { PICARD = 2 };
 /* Solid fractions below this count as this in the viscous equation. */
 #define LEAST_NU 1e-6
 /* The first pass only serves the shear rate of the second, and is solved to
  * this times the tolerance. */
 #define FIRST_PASS 100
-/* Solves of an exact yield are repeated above a mismatch (yield.h) of UNFIT
- * until it is below FIT. */
-#define UNFIT 0.02
-#define FIT 0.0005
 /* Still grains are slower than this part of what gravity gives in a step. */
 #define SLOW 0.1
 
@@ -115,13 +110,13 @@ static void solve_exponential(struct four_state *sim,
 static void solve_yield(struct four_state *sim, const struct equation *by) {
   const struct mesh *mesh = sim->grid.mesh;
   const double rho = sim->closure.param[LEE_HUANG_RHO_D];
-  double *full[DIM], *face[2], *u[DIM], mismatch = HUGE_VAL;
+  double *full[DIM], *face[2], *u[DIM];
   field_arrays(sim->u, u);
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, full);
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   double *r = face[0], *eta = face[1];
-  int k = 0;
-  for (; k < MOST_SOLVES && mismatch > (k == 1 ? UNFIT : FIT); k++) {
+  bool fits = false;
+  for (int k = 0; !fits; k++) {
     if (k > 0) four_state_shear(sim, u);
     yield_set_rate(&sim->yield, sim->params, rho, sim->scale);
     yield_linearise(&sim->yield, k > 0 ? 0 : by->dt, r, eta, full);
@@ -131,13 +126,11 @@ static void solve_yield(struct four_state *sim, const struct equation *by) {
     }
     diffuse(sim, by, full, eta, 1);
     calm(sim, by);
-    mismatch = yield_advance(&sim->yield, by->dt, r, eta, u, k > 0);
+    fits = yield_fits(&sim->yield, (long long)sim->model.step, k + 1,
+                      yield_advance(&sim->yield, by->dt, r, eta, u, k > 0));
   }
   four_state_book_friction(sim, by->mass, by->rhs, u);
   scratch_give(&sim->scratch, __func__);
-  if (mismatch > (k == 1 ? UNFIT : FIT))
-    yield_say_misfit(&sim->yield, (long long)sim->model.step, k, mismatch, FIT,
-                     UNFIT);
 }
 
 void four_state_predict(struct four_state *sim, double dt, double *a_f,

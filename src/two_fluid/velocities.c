@@ -11,12 +11,9 @@
 #include "talus/two_fluid_pair.h"
 #include "talus/viscous.h"
 
-/* Friction is found PICARD times, with the shear rates of the last solve, and
- * with an exact yield at most MOST_SOLVES times until the stress fits. */
-enum { PICARD = 2, MOST_SOLVES = 8 };
-/* The mismatch (yield.h) that fits, and one that is told to the user. */
-#define FIT 0.0005
-#define BAD 0.02
+/* Friction is found PICARD times, with the shear rates of the last solve, with
+ * an exact yield at least so often (yield.h). */
+enum { PICARD = 2 };
 
 /* Return m of a phase in leaf i, > 0. */
 static double mass_of(const struct two_fluid *sim, int phase, int32_t i) {
@@ -162,14 +159,14 @@ static void solve_yield(struct two_fluid *sim, double dt, const double *mass,
                         double *const rhs[DIM], double *shared,
                         double *const full[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *face[3], *u[DIM], mismatch = HUGE_VAL;
+  double *face[3], *u[DIM];
   field_arrays(sim->u[TWO_FLUID_S], u);
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 3, face);
   double *r = face[0], *eta = face[1], *all = face[2];
   const double buoyant =
       two_fluid_density(sim, TWO_FLUID_S) - two_fluid_density(sim, TWO_FLUID_F);
-  int k = 0;
-  for (; k < MOST_SOLVES && (k < PICARD || mismatch > FIT); k++) {
+  bool fits = false;
+  for (int k = 0; k < PICARD || !fits; k++) {
     if (k > 0) two_fluid_viscosities(sim);
     yield_set_rate(&sim->yield, sim->params, buoyant, sim->scale);
     yield_linearise(&sim->yield, k > 0 ? 0 : dt, r, eta, full);
@@ -180,12 +177,10 @@ static void solve_yield(struct two_fluid *sim, double dt, const double *mass,
     solve(sim, TWO_FLUID_S, dt, all, mass, full,
           sim->params->tolerance_viscous * sim->scale);
     two_fluid_calm(sim);
-    mismatch = yield_advance(&sim->yield, dt, r, eta, u, k > 0);
+    fits = yield_fits(&sim->yield, (long long)sim->model.step, k + 1,
+                      yield_advance(&sim->yield, dt, r, eta, u, k > 0));
   }
   scratch_give(&sim->scratch, __func__);
-  if (mismatch > FIT)
-    yield_say_misfit(&sim->yield, (long long)sim->model.step, k, mismatch, FIT,
-                     BAD);
 }
 
 /* Solve for the grains and leave u_s* in `star`, where their forces are. */

@@ -13,13 +13,6 @@
 #include "talus/viscous.h"
 #include "talus/yield.h"
 
-/* Solves of an exact yield are repeated, MOST_SOLVES in all, until their
- * mismatch is below FIT. A heap that has lost 10 % of its stress has 0.035 and
- * would move by 1.4e-5 sqrt(g L). Above BAD the user is told. */
-#define FIT 0.0005
-#define BAD 0.02
-enum { MOST_SOLVES = 32 };
-
 /* Take scratch for the acceleration g that the predictor of Crank-Nicolson
  * needs to be of second order in time, and fill it: pressure and gravity, with
  * what viscosity and walls did in the last step; in backward Euler that only to
@@ -168,18 +161,17 @@ static struct solve_stats solve_viscous(struct two_phase *sim, double dt,
                        params->max_iterations, u);
 }
 
-/* Solve with an exact yield (yield.h) in repetition `repetition` of a step:
- * once, or up to MOST_SOLVES times until the stress fits the load. */
+/* Solve with an exact yield (yield.h) in repetition `repetition` of a step. */
 static void solve_yield(struct two_phase *sim, double dt, int repetition,
                         const double *mass, double *const rhs[DIM],
                         const struct bc *const bc[DIM], double *const u[DIM]) {
   const struct mesh *mesh = sim->grid.mesh;
-  double *full[DIM], *face[2], mismatch = HUGE_VAL;
+  double *full[DIM], *face[2];
   scratch_take(&sim->scratch, FIELD_FACE, __func__, 2, face);
   double *r = face[0], *eta = face[1];
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, full);
-  int k = 0;
-  for (; k < MOST_SOLVES && mismatch > FIT; k++) {
+  bool fits = false;
+  for (int k = 0; !fits; k++) {
     const struct solve_stats before = sim->viscous;
     const bool again = k > 0 || repetition > 0;
     yield_linearise(&sim->yield, again ? 0 : dt, r, eta, full);
@@ -189,14 +181,11 @@ static void solve_yield(struct two_phase *sim, double dt, int repetition,
       }
     }
     sim->viscous = solve_viscous(sim, dt, mass, eta, full, bc, u);
-    mismatch = yield_advance(&sim->yield, dt, r, eta, u, again);
     if (k > 0) solve_add(&sim->viscous, &before);
+    fits = yield_fits(&sim->yield, (long long)sim->model.step, k + 1,
+                      yield_advance(&sim->yield, dt, r, eta, u, again));
   }
   scratch_give(&sim->scratch, __func__);
-  if (k == MOST_SOLVES && mismatch > FIT) {
-    yield_say_misfit(&sim->yield, (long long)sim->model.step, k, mismatch, FIT,
-                     BAD);
-  }
 }
 
 void velocities_diffuse(struct two_phase *sim, double dt, int k) {

@@ -218,9 +218,9 @@ END_TEST
 START_TEST(a_bad_misfit_is_told_once) {
   struct params p = heap_params(false);
   struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
-  yield_say_misfit(&sim->yield, 0, 8, 0.01, 0.001, 0.02);
+  yield_fits(&sim->yield, 0, 32, 0.01);
   const int fair = sim->yield.misfits;
-  yield_say_misfit(&sim->yield, 0, 8, 0.03, 0.001, 0.02);
+  yield_fits(&sim->yield, 0, 32, 0.03);
   const int bad = sim->yield.misfits;
   two_phase_destroy(sim);
   ck_assert_int_eq(fair, 0);
