@@ -172,10 +172,11 @@ void four_state_destroy(struct four_state *sim) {
  * loose, 0 where there are hardly any. */
 static void set_followed(struct four_state *sim) {
   const double full = 0.9 * sim->keys->param[LEE_HUANG_NU_MIN];
+  const double none = 10 * sim->keys->nu_vacuum;
   const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double part = min2(sim->nu->v[i] / full, 1);
-    sim->c->v[i] = four_state_is_followed(sim, i) ? part : 0;
+    const double nu = sim->nu->v[i];
+    sim->c->v[i] = nu < none ? 0 : min2(nu / full, 1);
   }
   mesh_touch(mesh, sim->c->v);
 }

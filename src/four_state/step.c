@@ -300,12 +300,12 @@ static double find_step(struct four_state *sim, double dt_max) {
   return 0;
 }
 
-/* Add how many cells grains that the grid follows may have moved. */
+/* Add how many cells grains may have moved. */
 static void add_travel(struct four_state *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   double most = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    if (!four_state_is_followed(sim, i)) continue;
+    if (!four_state_has_grains(sim, i)) continue;
     for (int d = 0; d < DIM; d++) {
       most = max2(most, mesh_edges(mesh, i, fabs(sim->u[d]->v[i]) * dt));
     }

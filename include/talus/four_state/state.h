@@ -93,10 +93,5 @@ static inline bool four_state_has_grains(const struct four_state *sim,
                                          int32_t i) {
   return sim->nu->v[i] >= sim->keys->nu_vacuum;
 }
-/* Does the grid follow the grains of a leaf? Not dust. */
-static inline bool four_state_is_followed(const struct four_state *sim,
-                                          int32_t i) {
-  return sim->nu->v[i] >= 10 * sim->keys->nu_vacuum;
-}
 
 #endif
