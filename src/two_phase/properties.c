@@ -14,6 +14,10 @@
  * the grains: round-off must not choose. */
 #define ALONG 1e-9
 
+/* What the place of a surface next to a leaf counts for, by grains: only where
+ * a face has no other. */
+#define BESIDE 1e-30
+
 static inline double unit_range(double c) { return min2(max2(c, 0), 1); }
 
 /* Return the mean fraction of the leaves, not the nodes, of a face: see
@@ -73,10 +77,18 @@ static bool surface_potential(const struct mesh *mesh,
   return true;
 }
 
+/* Return what the place of the surface counts for of a leaf that has one of its
+ * own, or not. */
+static double place_weight(const struct gravity *gravity, double c, bool own) {
+  if (!gravity->by_grains) return 1;
+  if (!own) return BESIDE;
+  return vof_is_cut(c) ? max2(c * (1 - c), VOF_EMPTY) : VOF_EMPTY;
+}
+
 /* Give the potential of a leaf with a surface to its neighbours: c interpolated
  * in them, on the coarse side of a jump of level, feels that surface. */
 static void spread_potential(const struct mesh *mesh,
-                             const struct gravity *gravity) {
+                             const struct gravity *gravity, const double *c) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double potential = gravity->surface[i], count = gravity->count[i], near = 0;
     for (int f = 0; f < NFACE; f++) { /* > 0 in children of a leaf with 1 */
@@ -94,7 +106,8 @@ static void spread_potential(const struct mesh *mesh,
       count += gravity->count[node];
     }
     gravity->near_surface[i] = count > 0 ? potential / count : 0;
-    gravity->near_count[i] = count > 0;
+    gravity->near_count[i] =
+        count > 0 ? place_weight(gravity, c[i], gravity->count[i] > 0) : 0;
   }
 }
 
@@ -120,7 +133,7 @@ static void set_surface(const struct mesh *mesh, const double density[2],
                           plane, i, &gravity->surface[i]);
   }
   mesh_fill(mesh, 2, cells, bc, true);
-  spread_potential(mesh, gravity);
+  spread_potential(mesh, gravity, c);
   mesh_fill_ghosts(mesh, 2, ghosts);
   memcpy(gravity->surface, c, (size_t)mesh->nleaves * sizeof *c);
   mesh_fill_potential(mesh, gravity->rho, 2, potentials, bc, true);
@@ -144,8 +157,9 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
           (density[0] - density[1]) * (fraction[node[1]] - fraction[node[0]]);
       double potential = 0, count = 0;
       for (int side = 0; side < 2 && jump != 0; side++) {
-        potential += gravity->near_surface[leaf[side]];
-        count += gravity->near_count[leaf[side]];
+        const double weight = gravity->near_count[leaf[side]];
+        potential += weight * gravity->near_surface[leaf[side]];
+        count += weight;
       }
       const double weight = gravity->weight[node[1]] -
                             gravity->weight[node[0]] -

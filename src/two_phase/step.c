@@ -98,6 +98,7 @@ static struct gravity describe_gravity(const struct two_phase *sim,
                                        double *const work[5]) {
   const struct params *params = sim->params;
   struct gravity gravity = {.rho = sim->rho->v,
+                            .by_grains = sim->exact,
                             .weight = work[0],
                             .surface = work[1],
                             .count = work[2],

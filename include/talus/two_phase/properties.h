@@ -32,6 +32,12 @@
  * the surface a_f = g_d. A flat bed at any angle with its gravity then rests to
  * round-off. Gravity along a periodic axis has no potential and is added as a
  * constant.
+ *
+ * With an exact yield a leaf counts for c (1 - c) in that mean, which vanishes
+ * where its plane comes and goes, and one without a plane asks the leaves
+ * beside it only where no leaf of the face has one. By the even mean a leaf
+ * that took c = 3e-6 had half a say, and one beside a film was driven by 0.45 g
+ * on a slope that holds 0.32 g (docs/notes/yield.md).
  */
 #ifndef TALUS_TWO_PHASE_PROPERTIES_H
 #define TALUS_TWO_PHASE_PROPERTIES_H
@@ -55,6 +61,7 @@ struct gravity {
   double periodic[DIM]; /* along periodic axes */
   double origin[DIM];   /* Z, anywhere in the box */
   const double *rho;    /* [ncells] filled, by which p is; NULL: as if even */
+  bool by_grains;       /* x_S of a face by c (1 - c) (above) */
   /* scratch [ncells]: W; g.(x_S - Z) and 1 in leaves with a surface, else 0;
    * the same with the leaves next to them */
   double *weight, *surface, *count, *near_surface, *near_count;
