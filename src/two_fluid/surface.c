@@ -323,9 +323,10 @@ static double upper_part(const struct two_fluid *sim, int32_t i, int d,
 
 void two_fluid_find_contact(struct two_fluid *sim) {
   const struct mesh *mesh = sim->grid.mesh;
+  const int axis = outline_axis(sim->params->gravity);
   const double weight =
-      params_gravity(sim->params) * (two_fluid_density(sim, TWO_FLUID_S) -
-                                     two_fluid_density(sim, TWO_FLUID_F));
+      fabs(sim->params->gravity[axis]) * (two_fluid_density(sim, TWO_FLUID_S) -
+                                          two_fluid_density(sim, TWO_FLUID_F));
   for (int d = 0; d < DIM; d++) {
     double *upper = sim->upper[d]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++)

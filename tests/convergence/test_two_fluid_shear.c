@@ -170,7 +170,7 @@ static double incline(int n) {
   p.tolerance_pressure = p.tolerance_viscous = 1e-6;
   p.gravity[0] = g * sin(slope), p.gravity[1] = -g * cos(slope);
   struct two_fluid *sim = grains_new(&p);
-  const bool good = grains_run(sim, 10, 100000);
+  const bool good = grains_run(sim, 60, 100000);
   const struct mesh *mesh = sim->grid.mesh;
   const double scale = J * phi * (2500 - 1041) * g * cos(slope) / eta;
   double sum = 0;
@@ -186,13 +186,14 @@ static double incline(int n) {
   return sum;
 }
 
-/* Report it; the order is 1: the leaf at the surface, whose p_s is half that
- * below, is too loose. The last error is 0.0017. */
+/* Report it. After 10 s 32 leaves are still 0.05 % off by what seeps; where the
+ * top leaf leaned by all of g on the one below, errors were 0.65, 0.33, 0.17 %
+ * on 16, 32, 64. */
 static void report_incline(struct report *report) {
   static const double bars[] = {INFINITY, INFINITY, 1e-2};
   double error[3];
-  for (int k = 0; k < 3; k++) error[k] = incline(16 << k);
-  report_errors(report, "incline", "L2 of u", 4, 3, error, bars, 0.9);
+  for (int k = 0; k < 3; k++) error[k] = incline(8 << k);
+  report_errors(report, "incline", "L2 of u", 3, 3, error, bars, 1.2);
 }
 
 static void run(struct report *report) {

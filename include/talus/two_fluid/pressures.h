@@ -40,18 +40,19 @@
  *
  * Contact. The grains of a leaf lean on a face across the vertical by
  *   chi = min(1, p_s/(h/2 (rho_s - rho_f) alpha g)),
- * p_s and alpha the larger ones of both leaves: 1 within a bed, and 0 above
- * grains that carry nothing. Along each axis the part s = 1/2 (1 + chi_upper -
- * chi_lower) of a leaf counts for its upper face and the rest for the lower
- * one, in the mean w_s, in the mass rho_s of a face, with its weight, and in
- * what the leaf gets back. So a face between a bed and clear fluid, through
- * which nothing moves, does not let the bed fall; the face below feels the
- * whole leaf of the surface; and a bed that carries p_s at its top is balanced
- * there too. With plain means the leaf of the surface falls for ever, friction
- * shears the bed with it, and beds gain energy (docs/notes/two_fluid.md). Where
- * the surface cuts a leaf chi of a side across is what the bed wets of it, over
- * what it wets of the other one if that is more; along the vertical s is 1/2
- * where a leaf rests (surface.h), since its p_s is that of the middle.
+ * p_s and alpha the larger ones of both leaves, g along the vertical axis of
+ * the grid, on a slope too: 1 within a bed, and 0 above grains that carry
+ * nothing. Along each axis the part s = 1/2 (1 + chi_upper - chi_lower) of a
+ * leaf counts for its upper face and the rest for the lower one, in the mean
+ * w_s, in the mass rho_s of a face, with its weight, and in what the leaf gets
+ * back. So a face between a bed and clear fluid, through which nothing moves,
+ * does not let the bed fall; the face below feels the whole leaf of the
+ * surface; and a bed that carries p_s at its top is balanced there too. With
+ * plain means the leaf of the surface falls for ever, friction shears the bed
+ * with it, and beds gain energy (docs/notes/two_fluid.md). Where the surface
+ * cuts a leaf chi of a side across is what the bed wets of it, over what it
+ * wets of the other one if that is more; along the vertical s is 1/2 where a
+ * leaf rests (surface.h), since its p_s is that of the middle.
  */
 #ifndef TALUS_TWO_FLUID_PRESSURES_H
 #define TALUS_TWO_FLUID_PRESSURES_H
