@@ -14,8 +14,8 @@
  * the grains: round-off must not choose. */
 #define ALONG 1e-9
 
-/* What the place of a surface next to a leaf counts for, by grains: only where
- * a face has no other. */
+/* Weight of the place that a leaf has from those beside it, by grains: it
+ * counts only where a face has no other. */
 #define BESIDE 1e-30
 
 static inline double unit_range(double c) { return min2(max2(c, 0), 1); }
@@ -77,8 +77,7 @@ static bool surface_potential(const struct mesh *mesh,
   return true;
 }
 
-/* Return what the place of the surface counts for of a leaf that has one of its
- * own, or not. */
+/* Return the weight of the place of the surface in a leaf; own: it has one. */
 static double place_weight(const struct gravity *gravity, double c, bool own) {
   if (!gravity->by_grains) return 1;
   if (!own) return BESIDE;
