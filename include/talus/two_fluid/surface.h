@@ -49,9 +49,9 @@
  * column is (c_0 + c_1)^2/2 of it.
  *
  * The key grains.surface turns this on. It is not the default: with an exact
- * yield heaps and flat beds stand and collapses run as far as they should
- * (docs/notes/two_fluid.md), but fluidised beds and suspensions have not been
- * run with it.
+ * yield heaps and flat beds stand, and loose grains under liquid run as far as
+ * they should, but dry and inertial collapses stop short, and fluidised beds
+ * and suspensions have not been run with it (docs/notes/two_fluid.md).
  *
  * Faces of such a leaf pass phi times the part of the volume swept that the
  * plane of c fills (vof.h): nothing where the bed does not reach.
