@@ -196,7 +196,7 @@ static double cliff(void *context, const double x[3]) {
  * a gas of 1e-3 its edge jerks now and then, at up to 1.5e-5
  * (docs/notes/yield.md). */
 START_TEST(a_cliff_with_cohesion_stands) {
-  const double gas[] = {1e-6, 1e-3, 1e-3}, most[] = {3e-6, 3e-5, 1};
+  const double gas[] = {1e-6, 1e-3, 1e-3}, most[] = {1e-5, 1e-4, 1};
   double height = _i < 2 ? 0.25 : 0.75;
   struct params p = heap_params(false);
   p.shape = (struct function){cliff, &height};
