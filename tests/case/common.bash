@@ -49,6 +49,20 @@ last() {
     END { print column ? $column : "no column " name }' "$1/series.csv"
 }
 
+# restarts DIR STEPS CASE...: a run in two pieces, the first of STEPS, writes what
+# it writes in one
+restarts() {
+  local whole=$1 steps=$2
+  shift 2
+  ends 0 "$build/talus" run "$@" -o "$whole" --quiet
+  ends 5 "$build/talus" run "$@" -o "${whole}_parts" --quiet --max-steps "$steps"
+  ends 0 "$build/talus" run "$@" -o "${whole}_parts" --quiet --restart
+  diff <(series "$whole") <(series "${whole}_parts") > output ||
+    complain "$whole: a restart changes series.csv"
+  diff "$whole/profile.csv" "${whole}_parts/profile.csv" > output ||
+    complain "$whole: a restart changes profile.csv"
+}
+
 # books DIR TURNED COLUMN: TURNED is DIR, a step later and with twice the
 # gravity; the energy of this is no loss, which stands in COLUMN
 books() {

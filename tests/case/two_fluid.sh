@@ -5,17 +5,6 @@
 . "$(dirname "$0")/common.bash"
 talus=$build/talus
 
-# goes_on CASE WHAT: runs CASE.lua into CASE; a restart changes nothing
-goes_on() {
-  ends 0 "$talus" run "$1.lua" -o "$1" --quiet
-  ends 5 "$talus" run "$1.lua" -o "$1_parts" --quiet --max-steps 9
-  ends 0 "$talus" run "$1.lua" -o "$1_parts" --quiet --restart
-  diff <(series "$1") <(series "$1_parts") > output ||
-    complain "a restart changes series.csv $2"
-  diff "$1/profile.csv" "$1_parts/profile.csv" > output ||
-    complain "a restart changes profile.csv $2"
-}
-
 # agrees CASE RANKS WHAT: RANKS have the front of the run CASE, but for what the
 # solvers' tolerance lets through
 agrees() {
@@ -43,7 +32,7 @@ return {
   output = { stop = param("stop", 0.1, "s") },
 }
 END
-goes_on cliff "of a cliff"
+restarts cliff 9 cliff.lua
 agrees cliff 2 "of a cliff"
 
 # a tolerance below round-off asks for no more than that
@@ -104,25 +93,25 @@ done
 # tracers: what a profile has of them stays, over a restart too
 sed 's/domain = /tracers = { low = function(x, y) return 0.05 - y end }, &/' \
   cliff.lua > tracer.lua
-goes_on tracer "with tracers"
+restarts tracer 9 tracer.lua
 awk -F, 'NR > 1 { h[$1] += $3; low[$1] += $4 }
          END { for (t in h) if (low[t] / h[t] < 0.5 || low[t] / h[t] > 0.52)
                  exit 1 }' tracer/profile.csv || complain "tracers get lost"
 
 # rings: restart and ranks
 sed 's/dimension = /coordinates = "axisymmetric", &/' cliff.lua > ring.lua
-goes_on ring "in rings"
+restarts ring 9 ring.lua
 agrees ring 3 "in rings"
 
 # with the surface in closures and fluxes: restart and ranks
 sed 's/alpha_start = phi,/&  surface = "planes",/' cliff.lua > planes.lua
-goes_on planes "with planes"
+restarts planes 9 planes.lua
 agrees planes 2 "with planes"
 
 # with an exact yield: the same, and no bounds of a viscosity
 sed 's/alpha_start = phi,/&  regularisation = "exact",/' \
   cliff.lua > exact.lua
-goes_on exact "with an exact yield"
+restarts exact 9 exact.lua
 agrees exact 2 "with an exact yield"
 ends 2 "$talus" check exact.lua eta_max=1e5
 says 'grains.eta_max = 100000 has no meaning'
