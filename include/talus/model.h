@@ -58,6 +58,9 @@ struct model_kind {
   /* Write in a line what numbers of a case mean, for `talus check` and run.log;
    * "": nothing. NULL: the model has nothing to say. */
   void (*describe)(const struct params *params, size_t size, char *text);
+  /* Refuse what the initial state cannot be (a USER_ERROR), for `talus check`;
+   * start does so, too. NULL: nothing. */
+  void (*check)(const struct params *params);
   /* Make the initial state. Where the grid would outgrow the memory,
    * grid->outgrown is set and the grid stays coarser. */
   struct model *(*start)(const struct params *params,

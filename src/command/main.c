@@ -130,6 +130,8 @@ static int command_check(int argc, char *argv[]) {
   struct case_file *file = load_case(&line);
   struct run_size size;
   char text[RUN_SIZE_LENGTH];
+  const struct model_kind *kind = models_get(case_params(file)->model);
+  if (kind->check != NULL) kind->check(case_params(file));
   run_size_estimate(case_params(file), &size);
   run_size_text(&size, text);
   if (base_rank() == 0) {

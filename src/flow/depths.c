@@ -54,3 +54,39 @@ double depths_below(const struct params *params, int axis, double step,
                              : x[axis] - params->origin[axis];
   return min2(inside, wall);
 }
+
+/* Return the height of the highest part of the column through x without a gap.
+ */
+static double column_height(const struct params *params, int axis,
+                            const double x[3]) {
+  enum { N = 256 };
+  const double box = params->size * params->trees[axis];
+  double at[3] = {x[0], x[1], x[2]};
+  int inside = 0, most = 0;
+  for (int k = 0; k < N; k++) {
+    at[axis] = params->origin[axis] + (k + 0.5) * box / N;
+    const bool in = !params->shape.eval ||
+                    params->shape.eval(params->shape.context, at) > 0;
+    inside = in ? inside + 1 : 0;
+    if (inside > most) most = inside;
+  }
+  return most * box / N;
+}
+
+double depths_deepest(const struct params *params, int axis) {
+  enum { N = 64 };
+  double most = 0;
+  const int other[2] = {(axis + 1) % params->dimension,
+                        (axis + 2) % params->dimension};
+  const int rows = params->dimension == 3 ? N : 1;
+  for (int k = 0; k < N * rows; k++) {
+    const int place[2] = {k % N, k / N};
+    double x[3] = {0};
+    for (int e = params->dimension - 2; e >= 0; e--) {
+      const double box = params->size * params->trees[other[e]];
+      x[other[e]] = params->origin[other[e]] + (place[e] + 0.5) * box / N;
+    }
+    most = max2(most, column_height(params, axis, x));
+  }
+  return most;
+}

@@ -328,6 +328,7 @@ static const char *const STAGES[TWO_FLUID_NSTAGES] = {
 const struct model_kind two_fluid_model = {
     .keys = &two_fluid_model_keys,
     .describe = describe,
+    .check = two_fluid_check_packing,
     .start = start,
     .resume = resume,
     .renew = renew,

@@ -29,15 +29,30 @@ struct filling {
 };
 
 /* Return the weight of grains that fill their volume, less buoyancy, N/m^3. */
-static double weight_of(const struct two_fluid *sim, int axis) {
-  return fabs(sim->params->gravity[axis]) *
-         (two_fluid_density(sim, TWO_FLUID_S) -
-          two_fluid_density(sim, TWO_FLUID_F));
+static double weight_of(const struct params *params,
+                        const struct two_fluid_closure *c, int axis) {
+  return fabs(params->gravity[axis]) * (c->param[TWO_FLUID_GRAINS_DENSITY] -
+                                        c->param[TWO_FLUID_FLUID_DENSITY]);
 }
 
+/* Grains at rest of one plastic packing. */
+struct resting {
+  const struct two_fluid_closure *closure;
+  double phi_p;
+};
+
 static double packed(const void *context, double p) {
-  const struct two_fluid *sim = context;
-  return two_fluid_settled(&sim->closure, p, sim->keys->phi_p);
+  const struct resting *by = context;
+  return two_fluid_settled(by->closure, p, by->phi_p);
+}
+
+/* Return the solid fraction of settled grains over depth. */
+static struct depths settle(const struct params *params,
+                            const struct two_fluid_closure *c, int axis) {
+  const struct two_fluid_keys *keys = params->own;
+  const struct resting by = {c, keys->phi_p};
+  return depths_new(weight_of(params, c, axis),
+                    params->size * params->trees[axis], packed, &by);
 }
 
 /* Set alpha and phi_p of a leaf that the grains fill by the part c. */
@@ -55,7 +70,8 @@ static void fill_leaf(struct two_fluid *sim, const struct filling *by,
   if (by->depths && c > 0) alpha = depths_at(by->depths, depth);
   if (keys->start == TWO_FLUID_DENSE)
     sim->phi_p->v[i] = two_fluid_plastic_of(
-        &sim->closure, alpha, depth * alpha * weight_of(sim, by->axis));
+        &sim->closure, alpha,
+        depth * alpha * weight_of(params, &sim->closure, by->axis));
   sim->bed->v[i] = alpha;
   sim->alpha->v[i] = c * alpha;
 }
@@ -157,7 +173,8 @@ static double height_of(const struct two_fluid *sim, int axis) {
 static void set_cap(struct two_fluid *sim, int axis) {
   const double g = fabs(sim->params->gravity[axis]);
   const double H = height_of(sim, axis);
-  const double load = weight_of(sim, axis) * sim->keys->alpha_start * H;
+  const double load =
+      weight_of(sim->params, &sim->closure, axis) * sim->keys->alpha_start * H;
   sim->eta_max = sim->keys->eta_max;
   if (sim->eta_max == 0 && H > 0 && !(load > 0))
     USER_ERROR(
@@ -179,7 +196,8 @@ static void say_pressure(const struct two_fluid *sim, int axis) {
   const double phi = sim->keys->alpha_start;
   const struct two_fluid_frozen with = {.phi_p = sim->keys->phi_p};
   const double p = two_fluid_pressure(&sim->closure, phi, &with, NULL);
-  const double weight = weight_of(sim, axis) * phi * height_of(sim, axis);
+  const double weight =
+      weight_of(sim->params, &sim->closure, axis) * phi * height_of(sim, axis);
   log_info(
       "grains begin at a solid fraction of %g, where they hold %.3g Pa: %.3g "
       "times the weight of the heap on its floor",
@@ -218,7 +236,8 @@ static void check_balance(const struct two_fluid *sim) {
         net);
 }
 
-static void check_packing(const struct two_fluid *sim) {
+/* Refuse a solid fraction that the closures do not have. */
+static void check_fraction(const struct two_fluid *sim) {
   const double densest = two_fluid_densest(&sim->closure);
   if (sim->keys->alpha_start >= densest)
     USER_ERROR(
@@ -227,10 +246,39 @@ static void check_packing(const struct two_fluid *sim) {
         sim->keys->alpha_start, densest);
 }
 
+/* Return the depth at which settled grains pass a solid fraction, m. */
+static double depth_of(const struct depths *depths, double phi) {
+  int k = 0;
+  while (k < depths->n && depths->nu[k + 1] < phi) k++;
+  return k * depths->spacing;
+}
+
+void two_fluid_check_packing(const struct params *params) {
+  const int axis = outline_axis(params->gravity);
+  struct two_fluid_closure c;
+  two_fluid_closures(params, &c);
+  if (params->gravity[axis] == 0) return;
+  struct depths depths = settle(params, &c, axis);
+  const double deepest = depths_deepest(params, axis);
+  const double foot = depths_at(&depths, deepest);
+  const double allowed = depth_of(&depths, c.by.phi_m);
+  depths_free(&depths);
+  if (foot >= c.by.phi_m)
+    USER_ERROR(
+        "a heap of %.3g m packs its foot to a solid fraction of %.4f, and "
+        "closure = \"%s\" has no shear beyond phi_m = %g: such grains burst "
+        "when they give way. It allows %.3g m of them: take a lower heap, a "
+        "larger %s.phi_m, or closure = \"critical_state\", whose phi_m is "
+        "its densest packing",
+        deepest, foot, two_fluid_set_names[c.set], c.by.phi_m, allowed,
+        two_fluid_set_names[c.set]);
+}
+
 struct two_fluid *two_fluid_new(const struct params *params,
                                 const struct model_start *start) {
   struct forest_layout layout;
   check_boundaries(params);
+  two_fluid_check_packing(params);
   grid_layout(params, &layout);
   const int level =
       params->ncriteria > 0 ? params->level_min : params->level_max;
@@ -241,10 +289,8 @@ struct two_fluid *two_fluid_new(const struct params *params,
   const bool settled =
       sim->keys->start == TWO_FLUID_SETTLED && params->gravity[axis] != 0;
   struct depths depths = {0};
-  if (!settled) check_packing(sim);
-  if (settled)
-    depths = depths_new(weight_of(sim, axis),
-                        params->size * params->trees[axis], packed, sim);
+  if (!settled) check_fraction(sim);
+  if (settled) depths = settle(params, &sim->closure, axis);
   struct filling by = {axis, 3, settled ? &depths : NULL};
   if (params->ncriteria > 0) {
     adapt_to_state(sim, &by, 0);

@@ -81,6 +81,15 @@ ends 0 "$talus" run "$root/examples/cliff.lua" closure=mu_i_phi_i cells=8 \
   stop=0.2 -o gas --quiet
 grep -q burst output && complain "grains of mu_i_phi_i burst"
 
+# those of rauter cannot give way where their weight packs them beyond phi_m
+for command in check run; do
+  ends 2 "$talus" $command "$root/examples/cliff.lua" closure=rauter
+  says 'its foot to a solid fraction of 0.62.*phi_m = 0.585.*allows 0.0112 m'
+done
+ends 0 "$talus" run "$root/examples/cliff.lua" closure=rauter x_0=0.011 \
+  cells=8 stop=0.1 -o low --quiet
+grep -q burst output && complain "low grains of rauter burst"
+
 # a run that makes energy is not passed over
 ends 0 "$talus" run cliff.lua start=patched phi=0.62 stop=0.1 -o dense --quiet
 says 'J more than at the start.*they have burst'

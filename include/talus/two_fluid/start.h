@@ -10,6 +10,10 @@ struct model_start;
 struct params;
 struct two_fluid;
 
+/* Refuse grains whose own weight packs the foot of their heap beyond what can
+ * shear, the key phi_m of their closures: it would burst as it gives way,
+ * whatever it starts from. A USER_ERROR says so. */
+void two_fluid_check_packing(const struct params *params);
 struct two_fluid *two_fluid_new(const struct params *params,
                                 const struct model_start *start);
 
