@@ -188,7 +188,7 @@ static const struct column COLUMNS[NCOLUMNS] = {
     [PRESSURE_ITERATIONS] = {"pressure_iterations", COLUMN_INTEGER, "",
                              "of the linear solver in all of them"},
     [VISCOUS_ITERATIONS] = {"viscous_iterations", COLUMN_INTEGER, "",
-                            "of the viscous solver, two passes"},
+                            "of the viscous solver"},
     [CONDUCTION_ITERATIONS] = {"conduction_iterations", COLUMN_INTEGER, "",
                                "of the solver for T"},
     [WALL_SECONDS] = {"wall_seconds", COLUMN_SHORT, "s",

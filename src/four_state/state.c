@@ -49,12 +49,15 @@ static struct field *add_face(struct four_state *sim, const char *name) {
 static void add_state(struct four_state *sim) {
   static const char *const velocity[] = {"velocity_x", "velocity_y",
                                          "velocity_z"};
+  static const char *const trend[] = {"trend_x", "trend_y", "trend_z"};
   sim->nu = add(sim, "solid_fraction", "1", "solid fraction of grains",
                 &remap_limited, true);
   sim->nu->low = 0, sim->nu->high = 1;
   for (int d = 0; d < DIM; d++) {
     sim->u[d] = add(sim, velocity[d], "m/s", "velocity", &grain_rule, true);
-    sim->u[d]->component = d;
+    sim->trend[d] = add(sim, trend[d], "m/s^2", "change of the velocity",
+                        &grain_rule, false);
+    sim->u[d]->component = sim->trend[d]->component = d;
   }
   sim->T = add(sim, "temperature", "m^2/s^2", "granular temperature",
                &grain_rule, true);

@@ -10,8 +10,8 @@
  *
  * four_state_time_step   dt, by the flow
  * four_state_properties  p, p_E, mu_K, lambda_K of nu^n and T^n; masses
- * four_state_predict     twice, with gamma of u^n and then of u*; or with an
- *                        exact yield as yield.h says
+ * four_state_predict     gamma: that of u^n + dt du/dt, du/dt of the last
+ *                        prediction; or with an exact yield as yield.h says
  *     a_f = g - grad p/(rho_d M)
  *     rho_d nu u* - dt div[2 mu D(u*) + (lambda_K - 2/3 mu_K) div u* I]
  *         = rho_d nu (u^n + dt A(a_f))
@@ -32,7 +32,7 @@
  * Energy that forces take is booked as they act (work.h).
  *
  * Invariants between steps
- * 1. nu, u, T are valid on leaves; every stage fills what it reads.
+ * 1. nu, u, T, du/dt are valid on leaves; every stage fills what it reads.
  * 2. 0 <= nu, 0 <= T <= vacuum.T_max.
  */
 #include "talus/four_state/step.h"

@@ -10,13 +10,8 @@
 #include "talus/minmax.h"
 #include "talus/viscous.h"
 
-/* Friction is found PICARD times, with the shear rates of the last solve. */
-enum { PICARD = 2 };
 /* Solid fractions below this count as this in the viscous equation. */
 #define LEAST_NU 1e-6
-/* The first pass only serves the shear rate of the second, and is solved to
- * this times the tolerance. */
-#define FIRST_PASS 100
 /* Still grains are slower than this part of what gravity gives in a step. */
 #define SLOW 0.1
 
@@ -65,10 +60,10 @@ struct equation {
   double **rhs;       /* [DIM][nleaves] */
 };
 
-/* Solve it with a viscosity eta_f to `slack` times the tolerance, and give the
- * vacuum a velocity. Iterations are added up; u: guess, solution. */
+/* Solve it with a viscosity eta_f. Iterations are added up; u: guess, solution.
+ */
 static void diffuse(struct four_state *sim, const struct equation *by,
-                    double *const rhs[DIM], const double *eta_f, double slack) {
+                    double *const rhs[DIM], const double *eta_f) {
   const struct bc *bc[DIM];
   double *u[DIM];
   const struct viscosity viscosity = {
@@ -78,7 +73,7 @@ static void diffuse(struct four_state *sim, const struct equation *by,
   const int before = sim->viscous.iterations;
   sim->viscous = viscous_solve(
       sim->grid.mesh, sim->grid.hierarchy, by->mass, &viscosity, by->dt, rhs,
-      bc, slack * sim->params->tolerance_viscous * sim->scale,
+      bc, sim->params->tolerance_viscous * sim->scale,
       sim->params->max_iterations, u);
   sim->viscous.iterations += before;
 }
@@ -97,13 +92,9 @@ static void solve_exponential(struct four_state *sim,
                               const struct equation *by) {
   double *u[DIM];
   field_arrays(sim->u, u);
-  for (int k = 0; k < PICARD; k++) {
-    const bool last = k == PICARD - 1;
-    if (k > 0) four_state_viscosity(sim, u);
-    diffuse(sim, by, by->rhs, sim->eta_f->v, last ? 1 : FIRST_PASS);
-    if (last) four_state_book_friction(sim, by->mass, by->rhs, u);
-    calm(sim, by);
-  }
+  diffuse(sim, by, by->rhs, sim->eta_f->v);
+  four_state_book_friction(sim, by->mass, by->rhs, u);
+  calm(sim, by);
 }
 
 /* Do it with an exact yield (yield.h). */
@@ -124,7 +115,7 @@ static void solve_yield(struct four_state *sim, const struct equation *by) {
       for (int32_t i = 0; i < mesh->nleaves; i++)
         full[e][i] = by->rhs[e][i] + by->dt * full[e][i];
     }
-    diffuse(sim, by, full, eta, 1);
+    diffuse(sim, by, full, eta);
     calm(sim, by);
     fits = yield_fits(&sim->yield, (long long)sim->model.step, k + 1,
                       yield_advance(&sim->yield, by->dt, r, eta, u, k > 0));
@@ -146,16 +137,18 @@ void four_state_predict(struct four_state *sim, double dt, double *a_f,
   four_state_acceleration(sim, a_f, a);
   field_fill_many(mesh, DIM, sim->u);
   four_state_face_velocity(sim, u, start_f);
-  four_state_viscosity(sim, u);
   sim->impact +=
       0.5 * dt * four_state_fall(sim, u) - four_state_work(sim, dt, NULL, a, u);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     mass[i] = rho * max2(sim->nu->v[i], LEAST_NU);
     for (int e = 0; e < DIM; e++) {
-      u[e][i] += dt * a[e][i];
-      rhs[e][i] = mass[i] * u[e][i];
+      rhs[e][i] = mass[i] * (u[e][i] + dt * a[e][i]);
+      u[e][i] += dt * sim->trend[e]->v[i];
     }
   }
+  for (int e = 0; e < DIM; e++) mesh_touch(mesh, u[e]);
+  field_fill_many(mesh, DIM, sim->u);
+  four_state_viscosity(sim, u);
   sim->scale = speed_scale(sim, dt);
   sim->viscous = (struct solve_stats){0};
   if (sim->exact)
@@ -164,8 +157,14 @@ void four_state_predict(struct four_state *sim, double dt, double *a_f,
     solve_exponential(sim, &by);
   four_state_shear(sim, u);
   for (int e = 0; e < DIM; e++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) u[e][i] -= dt * a[e][i];
+    const double *before = sim->u[e]->saved;
+    double *trend = sim->trend[e]->v;
+    for (int32_t i = 0; i < mesh->nleaves; i++) {
+      trend[i] = (u[e][i] - before[i]) / dt;
+      u[e][i] -= dt * a[e][i];
+    }
     mesh_touch(mesh, u[e]);
+    mesh_touch(mesh, trend);
   }
   scratch_give(&sim->scratch, __func__);
 }

@@ -42,7 +42,7 @@ close() {
 }
 close exact exact_ranks grain_front 1e-5
 close rings rings_ranks grain_front 1e-5
-close rings quarter front 0.04
+close rings quarter grain_front 0.04
 close rings quarter height 0.04
 
 sed 's/top = "slip"/top = { "outflow", pressure = 0 }/' \

@@ -35,9 +35,10 @@ struct four_state {
   struct grid grid; /* owned, as all below */
 
   /* State, kept over adaptation and restart */
-  struct field *nu;     /* solid fraction */
-  struct field *u[DIM]; /* velocity, m/s */
-  struct field *T;      /* granular temperature, m^2/s^2 */
+  struct field *nu;         /* solid fraction */
+  struct field *u[DIM];     /* velocity, m/s */
+  struct field *trend[DIM]; /* du/dt of the last prediction, m/s^2 */
+  struct field *T;          /* granular temperature, m^2/s^2 */
 
   /* Remade in every step */
   struct field *p, *p_E;    /* pressure, and by contact, Pa */

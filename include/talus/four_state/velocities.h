@@ -2,9 +2,14 @@
 /* Velocities of grains after friction, before the pressure of the new step:
  *   rho_d nu u* - dt div tau(u*) = rho_d nu (u^n + dt A(a_f)),
  *   u* <- u* - dt A(a_f)
- * with A of properties.h. tau is that of eta_f and kappa_f of properties.h,
- * found with gamma of u^n and then of u*; or with an exact yield that of
- * yield.h, |s| <= eta_S p_E, which is that of the deviator of D. */
+ * with A of properties.h. tau is that of eta_f and kappa_f of properties.h, or
+ * with an exact yield that of yield.h, |s| <= eta_S p_E, which is that of the
+ * deviator of D. eta_f is that of gamma of the guess
+ *   u^n + dt du/dt,   du/dt = (u* - u^(n-1))/dt_old
+ * with the right hand side and dt of the last step, before A was taken off. The
+ * solve begins with it, too: one finds friction as well as two after each other
+ * do that begin with gamma of u^n, which alone lags (docs/notes/four_state.md).
+ * du/dt of the whole step would have the noise of its pressure. */
 #ifndef TALUS_FOUR_STATE_VELOCITIES_H
 #define TALUS_FOUR_STATE_VELOCITIES_H
 
