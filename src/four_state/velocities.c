@@ -71,10 +71,10 @@ static void diffuse(struct four_state *sim, const struct equation *by,
   field_arrays(sim->u, u);
   for (int e = 0; e < DIM; e++) bc[e] = sim->u[e]->bc;
   const int before = sim->viscous.iterations;
-  sim->viscous = viscous_solve(
-      sim->grid.mesh, sim->grid.hierarchy, by->mass, &viscosity, by->dt, rhs,
-      bc, sim->params->tolerance_viscous * sim->scale,
-      sim->params->max_iterations, u);
+  sim->viscous = viscous_solve(sim->grid.mesh, sim->grid.hierarchy, by->mass,
+                               &viscosity, by->dt, rhs, bc,
+                               sim->params->tolerance_viscous * sim->scale,
+                               sim->params->max_iterations, u);
   sim->viscous.iterations += before;
 }
 
