@@ -7,9 +7,9 @@
  *
  * By default leaves of the surface have no strength and friction is capped:
  * heaps are compared while they flow. With planes of the surface and an exact
- * yield they come to rest, and run-outs are compared too; meanwhile the front is
- * up to 8 % behind (docs/notes/two_fluid.md). Friction of critical_state in air
- * is mu_1 + (mu_2 - mu_1)/(1 + J_0/(a_I I^2)), 0.6 at I = 0.08 already. */
+ * yield they come to rest, and run-outs are compared too; meanwhile the front
+ * is up to 8 % behind (docs/notes/two_fluid.md). Friction of critical_state in
+ * air is mu_1 + (mu_2 - mu_1)/(1 + J_0/(a_I I^2)), 0.6 at I = 0.08 already. */
 #include "../mesh/two_fluid.h"
 #include "collapses.h"
 #include "report.h"
