@@ -5,6 +5,7 @@
 #define TALUS_TESTS_SIM_H
 
 #include "bench.h"
+#include "narrow.h"
 #include "talus/adapt.h"
 #include "talus/model.h"
 #include "talus/two_phase/start.h"
@@ -43,14 +44,6 @@ static inline struct params box_params(int level) {
   p.gravity[DIM - 1] = -1;
   for (int side = 0; side < 6; side++) p.boundary[side].type = BOUNDARY_SLIP;
   return p;
-}
-
-/* Make a unit box in 3D 2^-cut wide between its sides across the flow, with
- * leaves as long as before: for cases that are the same all over that width. */
-static inline void params_make_narrow(struct params *p, int cut) {
-  p->size = ldexp(p->size, -cut);
-  p->trees[0] = p->trees[DIM - 1] = 1 << cut;
-  p->level_min -= cut, p->level_max -= cut;
 }
 
 /* Describe a periodic box without gravity and gas. */

@@ -166,12 +166,16 @@ END_TEST
 
 Suite *closure_fields_suite(void) {
   Suite *suite = suite_create("closure_fields");
-  TCase *tcase = tcase_create("all");
+  TCase *tcase = tcase_create("all"), *alone = tcase_create("one level");
+  tcase_set_tags(alone, "one_rank");
   tcase_add_loop_test(
-      tcase, grains_have_their_shear_rate_and_state_and_gas_none, 0, 2);
+      alone, grains_have_their_shear_rate_and_state_and_gas_none, 0, 1);
+  tcase_add_loop_test(
+      tcase, grains_have_their_shear_rate_and_state_and_gas_none, 1, 2);
   tcase_add_test(tcase, an_exact_yield_adds_its_kept_stress);
   tcase_add_test(tcase, stretching_at_a_rate_shears_at_twice_of_it);
   tcase_add_test(tcase, the_mean_shear_rate_is_that_of_the_grains);
   suite_add_tcase(suite, tcase);
+  suite_add_tcase(suite, alone);
   return suite;
 }

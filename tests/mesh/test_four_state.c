@@ -5,12 +5,21 @@
 #include <check.h>
 
 #include "grid.h"
+#include "narrow.h"
 #include "talus/four_state/properties.h"
 #include "talus/four_state/temperature.h"
 
 Suite *four_state_suite(void);
 
-enum { LEVEL = DIM == 2 ? 5 : 4 };
+/* In 3D the box is a quarter as wide across the flow, and LEVEL that of a tree.
+ */
+enum { CUT = DIM == 2 ? 0 : 2, LEVEL = DIM == 2 ? 5 : 2 };
+
+static struct params box(struct four_state_keys *keys) {
+  struct params p = beads_params(keys, LEVEL + CUT);
+  params_make_narrow(&p, CUT);
+  return p;
+}
 
 /* Ask for fine leaves in the left half and around the surface, or below
  * 0.05 m and around the surface. */
@@ -41,7 +50,7 @@ START_TEST(a_layer_in_balance_rests) {
   double z[] = {-1, top[_i % 2]};
   struct four_state_keys keys = four_state_defaults();
   const int jump = _i / 2 % 3;
-  struct params p = with_levels(beads_params(&keys, LEVEL), jump);
+  struct params p = with_levels(box(&keys), jump);
   if (_i >= 6) p.coordinates = COORDINATES_AXISYMMETRIC;
   p.tolerance_pressure = 1e-8, p.tolerance_viscous = 1e-12;
   p.shape = (struct function){slab, z};
@@ -74,7 +83,7 @@ START_TEST(a_heap_rests) {
   struct four_state_keys keys = four_state_defaults();
   struct four_state_measures m;
   if (_i % 2) keys.regularisation = FOUR_STATE_EXACT;
-  struct params p = beads_params(&keys, LEVEL);
+  struct params p = box(&keys);
   if (_i >= 2) p.coordinates = COORDINATES_AXISYMMETRIC;
   p.level_min = LEVEL - 2;
   p.criterion[p.ncriteria++] = (struct criterion){
@@ -95,7 +104,7 @@ END_TEST
 START_TEST(pressure_at_rest_is_the_weight) {
   double z[] = {-1, 0.1}, most = 0;
   struct four_state_keys keys = four_state_defaults();
-  struct params p = beads_params(&keys, LEVEL);
+  struct params p = box(&keys);
   p.shape = (struct function){slab, z};
   struct four_state *sim = beads_new(&p);
   const bool done = beads_run(sim, 1, 1);
@@ -131,7 +140,7 @@ START_TEST(a_layer_falls_and_lands) {
   double z[] = {0.04, 0.1};
   struct four_state_keys keys = four_state_defaults();
   keys.start = FOUR_STATE_UNIFORM, keys.nu_start = 0.565;
-  struct params p = with_levels(beads_params(&keys, LEVEL), _i);
+  struct params p = with_levels(box(&keys), _i);
   p.shape = (struct function){slab, z};
   struct four_state *sim = beads_new(&p);
   struct four_state_measures before, falling, m;
@@ -182,7 +191,7 @@ static double column(void *context, const double x[3]) {
 static struct four_state *collapse(double unit, struct four_state_keys *keys,
                                    struct params *p, double *context) {
   *keys = four_state_defaults();
-  *p = beads_params(keys, LEVEL);
+  *p = box(keys);
   *context = unit;
   keys->param[LEE_HUANG_D] *= unit;
   keys->param[LEE_HUANG_K] *= unit * unit;
@@ -259,7 +268,7 @@ START_TEST(plane_shear_heats_as_a_tanh) {
   struct four_state_keys keys = four_state_defaults();
   keys.start = FOUR_STATE_UNIFORM, keys.nu_start = 0.55;
   keys.knudsen = INFINITY;
-  struct params p = with_levels(beads_params(&keys, LEVEL), 2 * _i);
+  struct params p = with_levels(box(&keys), 2 * _i);
   p.gravity[DIM - 1] = 0;
   p.dt_max = 0.05;
   p.tolerance_pressure = p.tolerance_viscous = 1e-9;
@@ -298,7 +307,7 @@ static double spread(void *context, const double x[3]) {
 START_TEST(grains_that_spread_in_rings_heat) {
   struct four_state_keys keys = four_state_defaults();
   keys.start = FOUR_STATE_UNIFORM, keys.nu_start = 0.55;
-  struct params p = with_levels(beads_params(&keys, LEVEL), _i);
+  struct params p = with_levels(box(&keys), _i);
   p.coordinates = COORDINATES_AXISYMMETRIC;
   p.gravity[DIM - 1] = 0;
   p.velocity[0] = (struct function){spread, NULL};
@@ -339,7 +348,7 @@ START_TEST(grains_in_rings_keep_their_mass) {
   struct four_state_keys keys = four_state_defaults();
   struct four_state_measures before, after;
   keys.start = FOUR_STATE_UNIFORM, keys.nu_start = 0.565;
-  struct params p = beads_params(&keys, LEVEL);
+  struct params p = box(&keys);
   p.coordinates = COORDINATES_AXISYMMETRIC;
   p.level_min = LEVEL - 2;
   p.criterion[p.ncriteria++] = (struct criterion){
@@ -361,19 +370,28 @@ END_TEST
 Suite *four_state_suite(void) {
   Suite *suite = suite_create("four_state");
   TCase *rest = tcase_create("rest"), *flow = tcase_create("flow");
-  tcase_add_loop_test(rest, a_layer_in_balance_rests, 0, DIM == 2 ? 12 : 6);
-  tcase_add_loop_test(rest, a_heap_rests, 0, DIM == 2 ? 4 : 2);
+  TCase *alone = tcase_create("long rest and flow");
+  tcase_set_tags(alone, "one_rank");
+  /* one with jumps and one in rings */
+  tcase_add_loop_test(rest, a_layer_in_balance_rests, 5, DIM == 2 ? 7 : 6);
+  tcase_add_loop_test(alone, a_layer_in_balance_rests, 0, 5);
+  tcase_add_loop_test(rest, a_heap_rests, 1, DIM == 2 ? 3 : 2);
+  tcase_add_loop_test(alone, a_heap_rests, 0, 1);
   tcase_add_test(rest, pressure_at_rest_is_the_weight);
   /* in 3D leaves are so coarse that some grains reach the floor at once */
-  tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, DIM == 2 ? 3 : 1);
+  tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, 1);
   tcase_add_loop_test(flow, plane_shear_heats_as_a_tanh, 0, 2);
   if (DIM == 2) { /* in 3D two runs on two ranks differ by 4e-9 at times */
-    tcase_add_test(flow, a_collapse_is_the_same_in_other_units);
-    tcase_add_test(flow, friction_does_not_lag);
+    tcase_add_loop_test(alone, a_layer_in_balance_rests, 7, 12);
+    tcase_add_loop_test(alone, a_heap_rests, 3, 4);
+    tcase_add_loop_test(alone, a_layer_falls_and_lands, 1, 3);
+    tcase_add_test(alone, a_collapse_is_the_same_in_other_units);
+    tcase_add_test(alone, friction_does_not_lag);
     tcase_add_loop_test(flow, grains_that_spread_in_rings_heat, 0, 3);
     tcase_add_test(flow, grains_in_rings_keep_their_mass);
   }
   suite_add_tcase(suite, rest);
   suite_add_tcase(suite, flow);
+  suite_add_tcase(suite, alone);
   return suite;
 }

@@ -45,6 +45,7 @@ Suite *names_suite(void);
 Suite *names_suite(void) {
   Suite *suite = suite_create("names");
   TCase *tcase = tcase_create("names");
+  tcase_set_tags(tcase, "one_rank");
   tcase_add_test(tcase, no_tracer_can_have_the_name_of_a_field);
   suite_add_tcase(suite, tcase);
   return suite;

@@ -182,11 +182,14 @@ END_TEST
 Suite *seal_suite(void);
 Suite *seal_suite(void) {
   Suite *suite = suite_create("seal");
-  TCase *tcase = tcase_create("files");
+  TCase *tcase = tcase_create("files"), *alone = tcase_create("bits");
+  tcase_set_tags(alone, "one_rank");
   tcase_add_checked_fixture(tcase, begin, end);
+  tcase_add_checked_fixture(alone, begin, end);
   tcase_add_test(tcase, damage_anywhere_is_seen);
-  tcase_add_test(tcase, every_bit_of_the_seal_counts);
+  tcase_add_test(alone, every_bit_of_the_seal_counts);
   tcase_add_test(tcase, other_formats_are_told_from_damage);
   suite_add_tcase(suite, tcase);
+  suite_add_tcase(suite, alone);
   return suite;
 }

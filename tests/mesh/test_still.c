@@ -86,9 +86,12 @@ END_TEST
 
 Suite *still_suite(void) {
   Suite *suite = suite_create("still");
-  TCase *tcase = tcase_create("surface");
-  tcase_add_loop_test(tcase, a_surface_across_levels_stays_at_rest, 0,
+  TCase *alone = tcase_create("level"), *tcase = tcase_create("tilted");
+  tcase_set_tags(alone, "one_rank");
+  tcase_add_loop_test(alone, a_surface_across_levels_stays_at_rest, 0, 7);
+  tcase_add_loop_test(tcase, a_surface_across_levels_stays_at_rest, 7,
                       NSURFACES);
+  suite_add_tcase(suite, alone);
   suite_add_tcase(suite, tcase);
   return suite;
 }

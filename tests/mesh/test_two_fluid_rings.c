@@ -181,13 +181,17 @@ END_TEST
 
 Suite *two_fluid_rings_suite(void) {
   Suite *suite = suite_create("two_fluid_rings");
-  TCase *tcase = tcase_create("rings");
+  TCase *tcase = tcase_create("rings"), *alone = tcase_create("long rest");
+  tcase_set_tags(alone, "one_rank");
   if (DIM == 2) {
-    tcase_add_loop_test(tcase, a_settled_bed_rests, 0, 3);
-    tcase_add_loop_test(tcase, a_cylinder_keeps_its_mass, 0, 2);
+    tcase_add_loop_test(tcase, a_settled_bed_rests, 2, 3);
+    tcase_add_loop_test(alone, a_settled_bed_rests, 0, 2);
+    tcase_add_loop_test(tcase, a_cylinder_keeps_its_mass, 1, 2);
+    tcase_add_loop_test(alone, a_cylinder_keeps_its_mass, 0, 1);
     tcase_add_loop_test(tcase, momentum_along_the_axis_stays, 0, 2);
     tcase_add_loop_test(tcase, a_linear_flow_carries_itself, 0, 2);
   }
   suite_add_tcase(suite, tcase);
+  suite_add_tcase(suite, alone);
   return suite;
 }

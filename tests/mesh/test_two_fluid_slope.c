@@ -118,9 +118,13 @@ END_TEST
 
 Suite *two_fluid_slope_suite(void) {
   Suite *suite = suite_create("two_fluid_slope");
-  TCase *flow = tcase_create("flow");
-  tcase_add_loop_test(flow, a_layer_slides_beyond_repose, 0, DIM == 2 ? 4 : 3);
-  tcase_add_loop_test(flow, a_dense_layer_stays, 0, DIM == 2 ? 2 : 1);
+  TCase *flow = tcase_create("flow"), *alone = tcase_create("long flow");
+  tcase_set_tags(alone, "one_rank");
+  tcase_add_loop_test(flow, a_layer_slides_beyond_repose, 2, 3);
+  tcase_add_loop_test(alone, a_layer_slides_beyond_repose, 0, 2);
+  if (DIM == 2) tcase_add_loop_test(alone, a_layer_slides_beyond_repose, 3, 4);
+  tcase_add_loop_test(alone, a_dense_layer_stays, 0, DIM == 2 ? 2 : 1);
   suite_add_tcase(suite, flow);
+  suite_add_tcase(suite, alone);
   return suite;
 }
