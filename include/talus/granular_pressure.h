@@ -66,6 +66,8 @@ struct granular_pressure {
                                grains are compressed; 0: P' of nu */
   double tolerance;         /* on max |R|; round-off passes */
   int max_newton, max_iterations;
+  bool guessed; /* nu and p are near the solution; else it begins with those of
+                   before */
   const struct granular_surface *surface; /* NULL: none */
   double *slope[DIM];                     /* [>= nleaves + nghosts] scratch */
   double *change, *mass, *rhs;            /* [ncells] scratch */
@@ -86,8 +88,8 @@ struct granular_stats {
 
 /* Find nu, p, u_f and the flux nu_f u_f at the end of dt.
  *   u_f   [nfaces_all] in: u_f*; out: with the new pressure
- *   p     [ncells] out: P(nu), filled
- *   nu    [nleaves] out: solid fraction by the fluxes
+ *   p     [ncells] in: a guess, if by->guessed; out: P(nu), filled
+ *   nu    [nleaves] likewise; out: solid fraction by the fluxes
  *   flux  [nfaces_all] out: nu_f u_f, valid on all faces
  * Collective. */
 struct granular_stats granular_pressure_solve(

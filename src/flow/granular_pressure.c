@@ -193,14 +193,17 @@ static struct solve_stats newton(const struct granular_pressure *by,
   return stats;
 }
 
-/* Begin with nu and p of the last step, and P' in mass. */
+/* Begin with nu and p of the last step unless there is a guess, and P' in mass.
+ */
 static void begin(const struct granular_pressure *by, const double *u_f,
                   double *nu, double *p) {
   const struct mesh *mesh = by->mesh;
   const struct granular_material *m = &by->material;
   memcpy(by->u_start, u_f, (size_t)mesh->nfaces_all * sizeof *u_f);
-  memcpy(nu, by->nu_old, (size_t)mesh->nleaves * sizeof *nu);
-  memcpy(p, by->p_old, (size_t)mesh->nleaves * sizeof *p);
+  if (!by->guessed) {
+    memcpy(nu, by->nu_old, (size_t)mesh->nleaves * sizeof *nu);
+    memcpy(p, by->p_old, (size_t)mesh->nleaves * sizeof *p);
+  }
   for (int32_t i = 0; i < mesh->nleaves; i++)
     m->pressure(m->context, i, nu[i], &by->mass[i]);
   for (int d = 0; d < DIM; d++)

@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "roots.h"
 #include "talus/memory.h"
+#include "talus/roots.h"
 
 static const double PI = 3.14159265358979323846;
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "roots.h"
 #include "talus/lee_huang.h"
+#include "talus/roots.h"
 
 static const double PI = 3.14159265358979323846;
 

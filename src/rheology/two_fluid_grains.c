@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "roots.h"
+#include "talus/roots.h"
 #include "two_fluid_sets.h"
 
 double two_fluid_pressure(const struct two_fluid_closure *c, double phi,

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "roots.h"
 #include "talus/rheology.h"
+#include "talus/roots.h"
 
 /* Decades that are searched, in steps of which none hides a window. */
 enum { FIRST = -8, LAST = 8, PER_DECADE = 50 };

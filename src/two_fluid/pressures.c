@@ -7,6 +7,7 @@
 #include "talus/minmax.h"
 #include "talus/outline.h"
 #include "talus/projection.h"
+#include "talus/roots.h"
 #include "talus/two_fluid/jumps.h"
 #include "talus/two_fluid/properties.h"
 #include "talus/two_fluid/state.h"
@@ -208,19 +209,22 @@ static double find_pressure(const void *context, int32_t i, double alpha,
   return two_fluid_law(sim, i, max2(alpha, 0), sim->dt, slope);
 }
 
-/* Invert P between `from` and `guess`, to round-off. */
+/* Holds what P of a leaf is inverted with. */
+struct question {
+  const struct two_fluid *sim;
+  int32_t leaf;
+};
+
+static double pressure_of(double alpha, double *slope, const void *context) {
+  const struct question *of = context;
+  return find_pressure(of->sim, of->leaf, alpha, slope);
+}
+
+/* Invert P. */
 static double find_fraction(const void *context, int32_t i, double p,
                             double from, double guess) {
-  const struct two_fluid *sim = context;
-  double low = max2(from, 0), high = guess, middle = high;
-  for (int k = 0; k < 60 && high - low > 1e-15; k++) {
-    middle = 0.5 * (low + high);
-    if (two_fluid_law(sim, i, middle, sim->dt, NULL) < p)
-      low = middle;
-    else
-      high = middle;
-  }
-  return middle;
+  const struct question of = {context, i};
+  return root_of_rising(pressure_of, &of, p, max2(from, 0), guess);
 }
 
 struct granular_pressure two_fluid_material(struct two_fluid *sim,
@@ -263,13 +267,15 @@ static void start_grains(struct two_fluid *sim, double dt, double *u_f) {
   field_fill_faces(mesh, sim->mobility_f);
 }
 
-/* Find p_s, alpha at the end of the step and the flux, for the present j. */
+/* Find p_s, alpha at the end of the step and the flux, for the present j; those
+ * of the last pass are the guess. */
 static void press(struct two_fluid *sim, double dt, double *p_s) {
   double *u_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   start_grains(sim, dt, u_f);
   const struct granular_surface surface = {sim, two_fluid_passing};
   struct granular_pressure by = two_fluid_material(sim, "pressure");
   if (sim->keys->surface == TWO_FLUID_PLANES) by.surface = &surface;
+  by.guessed = sim->passes > 0;
   const int newton = sim->pressure.newton;
   const int iterations = sim->pressure.iterations;
   sim->pressure = granular_pressure_solve(&by, dt, u_f, p_s, sim->alpha_new->v,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../../src/rheology/roots.h"
+#include "talus/roots.h"
 
 #include <check.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Roots of a function of one variable, by Brent's method as GSL has it. */
-#ifndef TALUS_RHEOLOGY_ROOTS_H
-#define TALUS_RHEOLOGY_ROOTS_H
+#ifndef TALUS_ROOTS_H
+#define TALUS_ROOTS_H
 
 /*
  * Find the root of f(x, context) between low and high, to the last bits; the
