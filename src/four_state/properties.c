@@ -193,19 +193,20 @@ void four_state_properties(struct four_state *sim) {
   set_mobility(sim);
 }
 
-/* Return the pressure of contact on a wall, with the weight of the grains that
- * lie on the wall: half of those of the leaf, or all of them where they do not
- * touch each other. */
+/* Return the pressure of contact on a wall: that of the leaf, with the weight
+ * of the grains between its middle and the wall, and as much of the others' as
+ * p does not carry. */
 static double wall_pressure(const struct four_state *sim, int d, int32_t f) {
   const struct mesh *mesh = sim->grid.mesh;
   const int32_t i = mesh->face_owner[f];
   const double nu = sim->nu->v[i], upper = sim->upper[d]->v[i];
   const bool low = mesh->face_node[f][1] == i; /* the wall is below */
   const double g = sim->params->gravity[d] * (low ? -1 : 1);
-  const double part =
-      nu < sim->closure.param[LEE_HUANG_NU_MIN] ? 1 : (low ? 1 - upper : upper);
+  const double part = low ? 1 - upper : upper;
   const double rho = sim->closure.param[LEE_HUANG_RHO_D];
-  return sim->p_E->v[i] + part * rho * nu * max2(g, 0) * mesh->h[i];
+  const double weight = rho * nu * max2(g, 0) * mesh->h[i];
+  return sim->p_E->v[i] + part * weight +
+         max2((1 - part) * weight - sim->p->v[i], 0);
 }
 
 void four_state_shear(struct four_state *sim, double *const u[]) {

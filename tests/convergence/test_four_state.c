@@ -118,8 +118,9 @@ struct collapse {
   struct four_state *sim;
   double tau_c;
   struct four_state_measures m;
-  double kinetic; /* of the last step */
-  int rises;      /* steps after 2 tau_c in which it rose */
+  double kinetic; /* of the last step, without grains that fly */
+  double all;     /* with them */
+  int rises;      /* steps after 2 tau_c in which both rose */
 };
 
 static struct collapse column_new(const char *level) {
@@ -135,8 +136,9 @@ static struct collapse column_new(const char *level) {
   return column;
 }
 
-/* Return the kinetic energy of leaves with nu > 1e-3: a few grains that fly
- * above the heap fall freely, J/m. */
+/* Return the kinetic energy of leaves with nu > 1e-3, J/m: a few grains that
+ * fly above the heap fall freely. Where they come down together they count
+ * again, so that it may rise while that of all grains falls. */
 static double kinetic_of(const struct four_state *sim) {
   const struct mesh *mesh = sim->grid.mesh;
   double sum = 0;
@@ -156,9 +158,10 @@ static bool column_run(struct collapse *column, double time) {
   while (good && column->sim->model.time < end * (1 - 1e-12)) {
     good = beads_run(column->sim, end, 1);
     const double kinetic = kinetic_of(column->sim);
+    const double all = four_state_store(column->sim).kinetic;
     if (column->sim->model.time > 2 * column->tau_c)
-      column->rises += kinetic > column->kinetic;
-    column->kinetic = kinetic;
+      column->rises += kinetic > column->kinetic && all > column->all;
+    column->kinetic = kinetic, column->all = all;
   }
   four_state_measure(column->sim, &column->m);
   return good;

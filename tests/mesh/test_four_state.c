@@ -129,6 +129,48 @@ START_TEST(pressure_at_rest_is_the_weight) {
 }
 END_TEST
 
+/* Return the contact pressure on the floor, over the weight of a leaf, of two
+ * rows of loose grains that slide: by how far friction exceeds mu_K. */
+static double rubbing(double T) {
+  static const double NU = 0.3, SPEED = 0.5;
+  double z[] = {-1, 2 * 0.16 / (1 << LEVEL)}, sum = 0, n = 0;
+  struct four_state_keys keys = four_state_defaults();
+  keys.start = FOUR_STATE_UNIFORM, keys.nu_start = NU;
+  struct params p = beads_params(&keys, LEVEL);
+  p.shape = (struct function){slab, z};
+  struct four_state *sim = beads_new(&p);
+  const struct mesh *mesh = sim->grid.mesh;
+  double *u[DIM];
+  field_arrays(sim->u, u);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    u[0][i] = SPEED;
+    sim->T->v[i] = sim->nu->v[i] > 0 ? T : 0;
+  }
+  fields_touch(&sim->grid.fields, mesh);
+  field_fill_many(mesh, DIM, sim->u);
+  four_state_properties(sim);
+  four_state_viscosity(sim, u);
+  const int32_t end = mesh->face_begin[DIM];
+  for (int32_t f = mesh->face_begin[DIM - 1]; f < end; f++) {
+    const int32_t i = mesh->face_owner[f];
+    if (mesh->face_patch[f] != 2 * (DIM - 1)) continue;
+    const double mu_E = sim->eta_f->v[f] - sim->mu_K->v[i];
+    const double weight = 2500 * 9.81 * sim->nu->v[i] * mesh->h[i];
+    sum += mu_E * sim->shear_f->v[f] / (0.42 * weight), n++;
+  }
+  sum = mesh_sum(mesh, sum), n = mesh_sum(mesh, n);
+  four_state_destroy(sim);
+  return sum / n;
+}
+
+/* Loose grains rub the floor with their weight, but for half of it where their
+ * collisions carry what lies above the middle of the leaf. */
+START_TEST(collisions_carry_grains_above_a_wall) {
+  ck_assert_double_eq_tol(rubbing(0), 1, 1e-6);
+  ck_assert_double_eq_tol(rubbing(0.1), 0.5, 1e-6);
+}
+END_TEST
+
 /* A layer falls freely: momentum g t to 1e-4, mass to round-off, and lands
  * without passing nu_0 and without a gain of energy. The works of friction,
  * collisions and pressure, each of its own force, account for its energy at all
@@ -379,6 +421,7 @@ Suite *four_state_suite(void) {
   tcase_add_loop_test(alone, a_heap_rests, 0, 1);
   tcase_add_test(rest, pressure_at_rest_is_the_weight);
   /* in 3D leaves are so coarse that some grains reach the floor at once */
+  tcase_add_test(flow, collisions_carry_grains_above_a_wall);
   tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, 1);
   tcase_add_loop_test(flow, plane_shear_heats_as_a_tanh, 0, 2);
   if (DIM == 2) { /* in 3D two runs on two ranks differ by 4e-9 at times */

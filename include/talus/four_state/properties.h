@@ -31,9 +31,11 @@ void four_state_contacts(struct four_state *sim);
  * Collective. */
 void four_state_properties(struct four_state *sim);
 /* Set eta_f, kappa_f and shear_f of a velocity u, filled: friction
- * p_E eta_S (1 - exp(-n gamma/2))/gamma and mu_K, p_E on no-slip walls with the
- * weight of the grains that lie on them. With an exact yield eta_f is mu_K and
- * yield.tau_y is p_E eta_S. Collective. */
+ * p_E eta_S (1 - exp(-n gamma/2))/gamma and mu_K. On no-slip walls p_E is with
+ * the weight w of the grains of the leaf, of which the part s is nearer to the
+ * wall: p_E + s w + max((1 - s) w - p, 0), as p carries what lies above the
+ * middle of the leaf. With an exact yield eta_f is mu_K and yield.tau_y is
+ * p_E eta_S. Collective. */
 void four_state_viscosity(struct four_state *sim, double *const u[]);
 /* Set shear_f, on all faces. u filled. Collective. */
 void four_state_shear(struct four_state *sim, double *const u[]);
