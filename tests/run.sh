@@ -4,8 +4,9 @@
 #
 #   tests/run.sh BUILD GROUP...
 #
-# A group may be cut down to a part of it: mesh:3d/2, case:ends. What needs one
-# core only is run beside others, as many at once as there are cores.
+# A group may be cut down to a part of it: mesh:3d/2, case:ends. What of unit,
+# mesh and case needs one core only is run beside others, as many at once as there
+# are cores; what needs more is run alone, after these.
 #
 #   format    clang-format 14 has nothing to change
 #   includes  tools/check_includes.py, check_prose.py, check_circles.py
@@ -159,41 +160,20 @@ at_once() {
   failed=$((failed + 1))
 }
 
-# group_unit [DIMENSION]
+# group_unit DIMENSION
 group_unit() {
-  if [ -n "$1" ]; then
-    run_suite "unit $1" "$build/$1/unit"
-  else
-    at_once unit:2d unit:3d
-  fi
+  run_suite "unit $1" "$build/$1/unit"
 }
 
-# group_mesh [DIMENSION/RANKS]
+# group_mesh DIMENSION/RANKS
 group_mesh() {
-  local d n
-  if [ -n "$1" ]; then
-    d=${1%/*} n=${1#*/}
-    run_suite "mesh $d on $n" mpirun --oversubscribe -n "$n" "$build/$d/mesh"
-    return
-  fi
-  for n in ${RANKS:-1 2 3}; do
-    if [ "$n" -eq 1 ]; then
-      at_once mesh:3d/1 mesh:2d/1
-    else
-      for d in 2d 3d; do group_mesh "$d/$n"; done
-    fi
-  done
+  local d=${1%/*} n=${1#*/}
+  run_suite "mesh $d on $n" mpirun --oversubscribe -n "$n" "$build/$d/mesh"
 }
 
-# group_case [NAME]
+# group_case NAME
 group_case() {
-  if [ -n "$1" ]; then
-    run_one "case $1" bash "tests/case/$1.sh" "$build"
-    return
-  fi
-  local f parts=()
-  for f in tests/case/*.sh; do parts+=("case:$(basename "$f" .sh)"); done
-  at_once "${parts[@]}"
+  run_one "case $1" bash "tests/case/$1.sh" "$build"
 }
 
 group_examples() {
@@ -219,10 +199,24 @@ group_small() {
   for n in 1 2; do run_one "column on $n" run_few_steps "$n"; done
 }
 
+pool=()
+alone=()
 for group in "$@"; do
-  part=
-  [[ $group == *:* ]] && part=${group#*:}
-  "group_${group%%:*}" "$part"
+  case $group in
+    unit) pool+=(unit:2d unit:3d) ;;
+    mesh)
+      for n in ${RANKS:-1 2 3}; do
+        if [ "$n" -eq 1 ]; then
+          pool+=(mesh:3d/1 mesh:2d/1)
+        else
+          alone+=("2d/$n" "3d/$n")
+        fi
+      done ;;
+    case) for f in tests/case/*.sh; do pool+=("case:$(basename "$f" .sh)"); done ;;
+    *) "group_${group%%:*}" "${group#*:}" ;;
+  esac
 done
+[ ${#pool[@]} -gt 0 ] && at_once "${pool[@]}"
+for part in "${alone[@]}"; do group_mesh "$part"; done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

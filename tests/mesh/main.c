@@ -2,9 +2,9 @@
 /* Runs the suites of tests/mesh on all ranks at once. The list of suites is
  * made by the Makefile from the names of the files.
  *
- * What a model does over many steps takes most of its time on ranks waiting for
- * the others, and says no more of them than a few steps: test cases with the
- * tag "one_rank" are left out on more ranks.
+ * Ranks wait for each other at every fill, most of all in long runs, which say
+ * no more of ranks than a few steps do: test cases that have the tag "one_rank"
+ * are left out on more ranks.
  *
  * Tests run in this process, as MPI does not survive a fork, and a failed
  * assertion jumps out of a test: reduce the verdict over ranks before any
