@@ -40,15 +40,19 @@ void still_find(struct two_phase *sim, double dt) {
 }
 
 /* Return w of a face: the least of the leaves with more than `few` grains, 0
- * without. */
+ * without. A leaf with less than HOLDS_GRAINS of the grains of the other has
+ * the less to say the fewer it has: its gas may carry them along. */
 static double face_weight(const struct two_phase *sim, double few, int32_t f) {
+  const int32_t *leaf = sim->grid.mesh->face_leaf[f];
   double least = 1;
   bool grains = false;
   for (int side = 0; side < 2; side++) {
-    const int32_t leaf = sim->grid.mesh->face_leaf[f][side];
-    if (leaf < 0) return 0;
-    if (!(sim->c->v[leaf] > few)) continue;
-    least = min2(least, sim->yield.still->v[leaf]);
+    if (leaf[side] < 0 || leaf[!side] < 0) return 0;
+    const double c = sim->c->v[leaf[side]];
+    const double counted = HOLDS_GRAINS * sim->c->v[leaf[!side]];
+    if (!(c > few)) continue;
+    const double w = sim->yield.still->v[leaf[side]];
+    least = min2(least, c < counted ? max2(w, 1 - c / counted) : w);
     grains = true;
   }
   return grains ? least : 0;

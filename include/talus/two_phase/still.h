@@ -16,7 +16,8 @@
  *             + w [m_c(u*) + dt alpha_f grad p^n],
  * m_c the mean by mass with a gas that weighs nothing, and of leaves with
  * grains beside the face, c > min(0.01, rho_gas/rho_grains), w is the least
- *   w = max(0, 1 - |u^n|/(0.1 dt |gravity|)).
+ *   w = max(0, 1 - |u^n|/(0.1 dt |gravity|)),
+ * and at least 1 - c/(0.01 c') where that of the other leaf is c' > 100 c.
  * Grains that fall freely pass that speed in a tenth of a step. Of grains that
  * move it would leave odd and even pressures apart, which u does not feel.
  *
