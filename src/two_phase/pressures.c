@@ -214,6 +214,7 @@ static void measure_repetition(struct two_phase *sim, int k,
                                const double *last) {
   const struct mesh *mesh = sim->grid.mesh;
   double change = 0;
+  sim->repeat_change = 0;
   if (k == 0) return;
   for (int32_t f = 0; f < mesh->nfaces; f++) {
     change = max2(change, fabs(sim->u_f->v[f] - last[f]));

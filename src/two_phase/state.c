@@ -211,9 +211,8 @@ static void add_scratch(struct two_phase *sim) {
   /* for a predictor with viscosity, or sweeps in two orders */
   const bool more = sim->params->theta < 1 || sim->exact || DIM == 3;
   const int ncells = (more ? 3 : 2) * DIM + 1;
-  const int repeats = sim->params->picard > 0; /* keeps u_f of before */
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, ncells,
-               sim->exact ? sim->yield.nrows + 3 + repeats : DIM + 2);
+               sim->exact ? sim->yield.nrows + 4 : DIM + 2);
 }
 
 struct two_phase *two_phase_new_on(const struct params *params,

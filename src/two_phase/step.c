@@ -30,7 +30,8 @@
  *     u <- u - dt/h sum_d [u_f^{n+1/2} (u^{n+1/2} - u^n)]_d
  *   with solver.advection = "off" not this, and the second line of
  *   fractions_advance not either
- * and, once or repeatedly with eta_f of the latest u and p (repeat_properties),
+ * and, once or repeatedly with eta_f of the latest u and p (repeat_properties;
+ * in the first step of a run from rest at least START_REPETITIONS times),
  * velocities_diffuse   with "exact" as yield.h says, else
  *     (rho + dt drag) u* - theta dt div(2 eta D(u*))
  *         = rho (u + dt g) + (1 - theta) dt div(2 eta D(u^n))
@@ -92,6 +93,10 @@
  * RETRY_FACTOR; a step too long for the flow it finds, SHORTENINGS times. */
 enum { RETRIES = 3, SHORTENINGS = 30 };
 #define RETRY_FACTOR 0.25
+
+/* A run from rest begins with the pressure of grains without viscosity: so
+ * often its first step is repeated, until p is that of grains that yield. */
+enum { START_REPETITIONS = 8 };
 
 /* Describe gravity for properties_gravity, with five arrays of scratch. */
 static struct gravity describe_gravity(const struct two_phase *sim,
@@ -160,11 +165,11 @@ static void update_viscosity(struct two_phase *sim,
 }
 
 /* Keep the advected velocity (k = 0), or set u back to it before repetition k
- * and renew the viscosity from the latest u and p. */
-static void repeat_properties(struct two_phase *sim, int k,
+ * of these and renew the viscosity from the latest u and p. */
+static void repeat_properties(struct two_phase *sim, int k, int repetitions,
                               double *advected[DIM]) {
   const size_t bytes = (size_t)sim->grid.mesh->nleaves * sizeof(double);
-  if (sim->params->picard == 0) return;
+  if (repetitions == 0) return;
   if (k > 0) {
     field_fill_many(sim->grid.mesh, DIM, sim->u);
     update_viscosity(sim, sim->u);
@@ -176,7 +181,21 @@ static void repeat_properties(struct two_phase *sim, int k,
     memcpy(k > 0 ? u : advected[e], k > 0 ? advected[e] : u, bytes);
     mesh_touch(sim->grid.mesh, k > 0 ? u : advected[e]);
   }
-  if (k == sim->params->picard) scratch_give(&sim->scratch, "advected");
+  if (k == repetitions) scratch_give(&sim->scratch, "advected");
+}
+
+/* Return how often viscosity and projection of this step are repeated.
+ * Collective. */
+static int count_repetitions(const struct two_phase *sim) {
+  const int picard = sim->params->picard;
+  if (sim->model.step > 0 || picard > START_REPETITIONS) return picard;
+  double speed = time_step_boundary_speed(sim, false);
+  for (int d = 0; d < DIM; d++) {
+    for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
+      speed = max2(speed, fabs(sim->u_old[d]->v[i]));
+    }
+  }
+  return mesh_max(sim->grid.mesh, speed) > 0 ? picard : START_REPETITIONS;
 }
 
 static void add_wall_work(struct two_phase *sim, double dt) {
@@ -268,9 +287,10 @@ static void advance_state(struct two_phase *sim, double dt, double rate) {
   update_viscosity(sim, sim->u_old), lap(sim, STAGE_RHEOLOGY);
   velocities_advect(sim, dt), lap(sim, STAGE_ADVECTION);
   double *advected[DIM];
-  for (int k = 0; k <= sim->params->picard; k++) {
+  const int repetitions = count_repetitions(sim);
+  for (int k = 0; k <= repetitions; k++) {
     const struct solve_stats viscous = sim->viscous, pressure = sim->pressure;
-    repeat_properties(sim, k, advected), lap(sim, STAGE_RHEOLOGY);
+    repeat_properties(sim, k, repetitions, advected), lap(sim, STAGE_RHEOLOGY);
     velocities_diffuse(sim, dt, k), lap(sim, STAGE_VISCOUS);
     pressures_project(sim, dt, k), lap(sim, STAGE_PROJECTION);
     if (k > 0) solve_add(&sim->viscous, &viscous);

@@ -8,10 +8,12 @@
 
 /* From one step to the next dt grows by at most this factor. */
 #define DT_GROWTH 1.2
-/* dt is at most this times sqrt(h/|g|) of grains at rest that set off. */
+/* dt is at most this times sqrt(h/a) of grains at rest that set off with a. */
 #define DT_ACCELERATION 0.1
 /* Or their speed grows by at most this part of it. */
-#define DT_UNDER_WAY 0.2
+#define DT_UNDER_WAY 0.25
+/* Friction takes at most the rest of |g| from a. */
+#define DT_LEFT 0.6
 /* After a step that was too long the next is at least this part of the bound.
  */
 #define DT_SHRINK 0.2
@@ -57,15 +59,18 @@ static double cfl_bound(const struct two_phase *sim, double rate) {
 }
 
 double time_step_of_start(const struct two_phase *sim, int32_t i) {
-  double g2 = 0, u2 = 0;
+  double g2 = 0, left2 = 0, u2 = 0;
   if (!(sim->c->v[i] > 0.5)) return HUGE_VAL;
   for (int d = 0; d < DIM; d++) {
-    g2 += sim->g[d]->v[i] * sim->g[d]->v[i];
+    const double g = sim->g[d]->v[i], left = g + sim->viscous_g[d]->v[i];
+    g2 += g * g;
+    left2 += left * left;
     u2 += sim->u[d]->v[i] * sim->u[d]->v[i];
   }
-  const double g = sqrt(g2), fall2 = g * sim->grid.mesh->h[i];
+  const double a = sqrt(max2(min2(left2, g2), DT_LEFT * DT_LEFT * g2));
+  const double fall2 = a * sim->grid.mesh->h[i];
   if (!(u2 < fall2)) return HUGE_VAL;
-  return max2(DT_ACCELERATION * sqrt(fall2), DT_UNDER_WAY * sqrt(u2)) / g;
+  return max2(DT_ACCELERATION * sqrt(fall2), DT_UNDER_WAY * sqrt(u2)) / a;
 }
 
 static double acceleration_bound(const struct two_phase *sim) {

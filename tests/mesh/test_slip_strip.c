@@ -143,7 +143,8 @@ START_TEST(gas_slips_in_the_strip) {
   int most = 0;
   for (int k = 0; k < 12 && good; k++) {
     good = step_advance(sim, 0.02) == EXIT_DONE;
-    if (sim->viscous.iterations > most) most = sim->viscous.iterations;
+    /* those of the first step are of all its repetitions */
+    if (k > 0 && sim->viscous.iterations > most) most = sim->viscous.iterations;
   }
   const struct mesh *mesh = sim->grid.mesh;
   field_fill(mesh, sim->u[0]);

@@ -802,17 +802,64 @@ START_TEST(repetitions_close_in_on_a_velocity) {
 }
 END_TEST
 
+/* A column set free yields under the pressure of grains that yield, which a run
+ * begins without. Four repetitions of its first step more change its speed by
+ * 0.007 (clipped at 10), 0.014 (exact; 0.005 in 3D), and by 0.65, 0.07 (0.04)
+ * where there are none before. Bit 0: exact, 1: it has a speed at first, and is
+ * not repeated. */
+static double downward(void *context, const double x[3]) {
+  (void)context, (void)x;
+  return -0.01;
+}
+
+START_TEST(a_first_step_from_rest_is_repeated) {
+  struct params params = box_params(5);
+  params.grains.rheology = mu_i(10);
+  if (_i & 1) rheology_set_regularisation(&params.grains.rheology, "exact");
+  if (_i & 2) params.velocity[DIM - 1] = (struct function){downward, NULL};
+  params.shape = (struct function){column, NULL};
+  if (DIM == 3) params_make_narrow(&params, 2);
+  double *u[2][DIM], change[2], sum[2] = {0};
+  bool done = true;
+  struct two_phase *sim[2];
+  for (int k = 0; k < 2; k++) {
+    params.picard = 12 * k;
+    sim[k] = sim_start(&params);
+    done = advance(sim[k], 1, 0.01) && done;
+    change[k] = sim[k]->repeat_change;
+    field_arrays(sim[k]->u, u[k]);
+  }
+  const struct mesh *mesh = sim[0]->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double grains = sim[0]->c->v[i] * mesh_volume(mesh, i);
+    for (int d = 0; d < DIM; d++) {
+      sum[0] += grains * pow(u[1][d][i] - u[0][d][i], 2);
+      sum[1] += grains * pow(u[1][d][i], 2);
+    }
+  }
+  const double part = sqrt(mesh_sum(mesh, sum[0]) / mesh_sum(mesh, sum[1]));
+  for (int k = 0; k < 2; k++) two_phase_destroy(sim[k]);
+  ck_assert(done);
+  ck_assert_double_gt(change[1], 0);
+  if (_i & 2) {
+    ck_assert_double_eq(change[0], 0);
+  } else {
+    ck_assert_double_le(part, 0.02);
+  }
+}
+END_TEST
+
 /* With a viscosity that does not change, a repetition mends what the viscous
  * solve has not seen of the new pressure gradient. In the grains of a moving
  * column that is what the interface has changed of their density: by how much
- * of their mean speed it moves them, in the mean of the squares: 8e-4 (2D),
- * 2.5e-3 (3D, narrow), and 1.4e-3 and 3.5e-3 where g has that of the last step.
- */
+ * of their mean speed it moves them, in the mean of the squares, in steps all
+ * alike: 2.1e-3 (2D), 1.8e-3 (3D, narrow), and 6.2e-3 and 3.5e-3 where g has
+ * that of the last step. */
 START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
   struct params params = box_params(DIM == 2 ? 6 : 5);
   double *u[2][DIM], sum[2] = {0};
   bool done = true;
-  params.cfl = 0.7;
+  params.dt_max = 0.015;
   params.grains.rheology = newtonian(0.1);
   params.shape = (struct function){column, NULL};
   if (DIM == 3) params_make_narrow(&params, 3);
@@ -820,7 +867,7 @@ START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
   for (int k = 0; k < 2; k++) {
     params.picard = 0;
     sim[k] = sim_start(&params);
-    done = advance(sim[k], 15, 1) && done;
+    done = advance(sim[k], 30, 1) && done;
     params.picard = k;
     done = advance(sim[k], 1, 1) && done;
     field_arrays(sim[k]->u, u[k]);
@@ -836,7 +883,7 @@ START_TEST(the_viscous_solve_sees_the_density_of_its_step) {
   const double part = sqrt(mesh_sum(mesh, sum[0]) / mesh_sum(mesh, sum[1]));
   for (int k = 0; k < 2; k++) two_phase_destroy(sim[k]);
   ck_assert(done);
-  ck_assert_double_le(part, DIM == 2 ? 1.1e-3 : 3.0e-3);
+  ck_assert_double_le(part, 2.6e-3);
 }
 END_TEST
 
@@ -897,6 +944,7 @@ Suite *step_suite(void) {
   tcase_add_test(tc, an_opening_lets_no_grains_in);
   tcase_add_test(alone, a_heap_less_steep_than_friction_rests);
   tcase_add_test(alone, repetitions_close_in_on_a_velocity);
+  tcase_add_loop_test(tc, a_first_step_from_rest_is_repeated, 0, 4);
   tcase_add_test(tc, the_viscous_solve_sees_the_density_of_its_step);
   tcase_add_test(tc, a_solve_that_fails_is_told);
   tcase_set_timeout(tc, 60);

@@ -204,24 +204,36 @@ START_TEST(a_tilt_is_a_sudden_start) {
 END_TEST
 
 /* From rest a tenth of what a fall across the leaf takes, then until the speed
- * has grown by a fifth; grains that are faster, and gas, are let be. */
-START_TEST(grains_that_set_off_may_gain_a_fifth_of_their_speed) {
+ * has grown by a quarter; grains that are faster, and gas, are let be. Of the
+ * fall friction takes a fifth, all (of which 0.4 count), less than nothing. */
+START_TEST(grains_that_set_off_may_gain_a_quarter_of_their_speed) {
+  enum { SPEEDS = 4, FRICTIONS = 4 };
+  static const double part[SPEEDS] = {0, 0.05, 0.9, 1.01},
+                      want[SPEEDS] = {0.1, 0.1, 0.225, 1e9},
+                      taken[FRICTIONS] = {0, 0.2, 1, -1},
+                      left[FRICTIONS] = {1, 0.8, 0.6, 1};
   struct params params;
   struct two_phase *sim = bed_at_rest(&params);
-  const double h = sim->grid.mesh->h[0], g = 3, speed = sqrt(g * h);
-  const double part[] = {0, 0.05, 0.9, 1.01}, want[] = {0.1, 0.1, 0.18, 1e9};
-  double dt[4], gas;
-  for (int d = 0; d < DIM; d++) sim->u[d]->v[0] = sim->g[d]->v[0] = 0;
+  const double h = sim->grid.mesh->h[0], g = 3;
+  double most = 0;
+  for (int d = 0; d < DIM; d++) {
+    sim->u[d]->v[0] = sim->g[d]->v[0] = sim->viscous_g[d]->v[0] = 0;
+  }
   sim->c->v[0] = 1;
   sim->g[0]->v[0] = -g;
-  for (int k = 0; k < 4; k++) {
-    sim->u[1]->v[0] = part[k] * speed;
-    dt[k] = fmin(time_step_of_start(sim, 0) / sqrt(h / g), 1e9);
+  for (int j = 0; j < FRICTIONS; j++) {
+    const double a = left[j] * g;
+    sim->viscous_g[0]->v[0] = taken[j] * g;
+    for (int k = 0; k < SPEEDS; k++) {
+      sim->u[1]->v[0] = part[k] * sqrt(a * h);
+      const double dt = fmin(time_step_of_start(sim, 0) / sqrt(h / a), 1e9);
+      most = larger(most, fabs(dt / want[k] - 1));
+    }
   }
   sim->c->v[0] = 0.4, sim->u[1]->v[0] = 0;
-  gas = time_step_of_start(sim, 0);
+  const double gas = time_step_of_start(sim, 0);
   two_phase_destroy(sim);
-  for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(dt[k], want[k], 1e-12);
+  ck_assert_double_le(most, 1e-12);
   ck_assert(gas == HUGE_VAL);
 }
 END_TEST
@@ -252,7 +264,7 @@ Suite *time_step_suite(void) {
   tcase_add_test(tc, another_gravity_is_a_new_start);
   tcase_add_test(tc, inflow_is_speed_times_area);
   tcase_add_test(tc, a_tilt_is_a_sudden_start);
-  tcase_add_test(tc, grains_that_set_off_may_gain_a_fifth_of_their_speed);
+  tcase_add_test(tc, grains_that_set_off_may_gain_a_quarter_of_their_speed);
   tcase_add_test(tc, the_same_conditions_change_nothing);
   suite_add_tcase(suite, tc);
   return suite;

@@ -4,6 +4,8 @@
  * The viscosity of a step comes from the strain rate and the pressure at its
  * beginning. Each repetition (`solver.picard`) takes both from the end just
  * found, and does viscosity and projection again from the advected velocity.
+ * The first step of a run from rest is repeated eight times in any case: p is
+ * at first that of grains without viscosity.
  * run.log tells how much every repetition changes the face velocity, and
  * repeat_change of series.csv tells it of the last. Iterations are those of all
  * repetitions, and the worst of their solves decides whether the step is good.

@@ -2,13 +2,14 @@
 /* The length of a time step.
  *
  *   1/2 sum |u_f| A dt / V <= cfl             in every leaf: advection
- *   dt <= max(0.1 sqrt(h/|g|), |u|/(5 |g|))   where grains set off, u^2 < |g| h
+ *   dt <= max(0.1 sqrt(h/a), |u|/(4 a))       where grains set off, u^2 < a h
  *   dt <= sqrt(h/|gravity|)                   of the finest leaves
  *   dt <= 1.2 (dt of the last step)
  *
- * The viscosity of grains that set off lags behind their strain rate, hence the
- * second: from rest they go 1/200 of a cell in a step, then their speed may
- * grow by a fifth. The third keeps waves of a surface at rest stable: the
+ * a is |g| or, where friction takes a part of it, |g + v| (step.c), at least 0.6
+ * |g|. The viscosity of grains that set off lags behind their strain rate, hence
+ * the second: from rest they go 1/200 of a cell in a step, then their speed may
+ * grow by a quarter. The third keeps waves of a surface at rest stable: the
  * height of a wave is a step ahead of its pressure, which needs w dt < 2 with
  * w^2 = pi g/h.
  *
