@@ -802,16 +802,17 @@ START_TEST(repetitions_close_in_on_a_velocity) {
 }
 END_TEST
 
-/* A column set free yields under the pressure of grains that yield, which a run
- * begins without. Four repetitions of its first step more change its speed by
- * 0.007 (clipped at 10), 0.014 (exact; 0.005 in 3D), and by 0.65, 0.07 (0.04)
- * where there are none before. Bit 0: exact, 1: it has a speed at first, and is
- * not repeated. */
+/* Return a speed of a column that begins with one. */
 static double downward(void *context, const double x[3]) {
   (void)context, (void)x;
   return -0.01;
 }
 
+/* A column set free yields under the pressure of grains that yield, which a run
+ * begins without. Four repetitions of its first step more change its speed by
+ * 0.007 (clipped at 10), 0.014 (exact; 0.005 in 3D), and by 0.65, 0.07 (0.04)
+ * where there are none before. Bit 0: exact, 1: it has a speed at first, and is
+ * not repeated. */
 START_TEST(a_first_step_from_rest_is_repeated) {
   struct params params = box_params(5);
   params.grains.rheology = mu_i(10);

@@ -6,12 +6,12 @@
  *   dt <= sqrt(h/|gravity|)                   of the finest leaves
  *   dt <= 1.2 (dt of the last step)
  *
- * a is |g| or, where friction takes a part of it, |g + v| (step.c), at least 0.6
- * |g|. The viscosity of grains that set off lags behind their strain rate, hence
- * the second: from rest they go 1/200 of a cell in a step, then their speed may
- * grow by a quarter. The third keeps waves of a surface at rest stable: the
- * height of a wave is a step ahead of its pressure, which needs w dt < 2 with
- * w^2 = pi g/h.
+ * a is |g| or, where friction takes a part of it, |g + v| (step.c), at least
+ * 0.6 |g|. The viscosity of grains that set off lags behind their strain rate,
+ * hence the second: from rest they go 1/200 of a cell in a step, then their
+ * speed may grow by a quarter. The third keeps waves of a surface at rest
+ * stable: the height of a wave is a step ahead of its pressure, which needs w
+ * dt < 2 with w^2 = pi g/h.
  *
  * The first two look at what the last step has left, and say nothing of a flow
  * that starts suddenly. So a step is repeated with a shorter dt where its own
