@@ -72,11 +72,13 @@ double plane_box_volume(const double n[DIM], double alpha, const double lo[DIM],
                         const double hi[DIM]);
 
 /*
- * Find the centroid x of the surface inside the cell: midpoint of the segment
- * (2D), centroid of the polygon (3D). A plane that misses the cell gives its
- * nearest corner, edge or face; n = 0 gives the centre of the cell.
+ * Find the foot x = alpha n/|n|_2^2 of the plane, its point nearest to the
+ * centre of the cell; n = 0 gives the centre. The plane of a cell nearly empty
+ * or full beside one of its faces has it in the middle of that face, at however
+ * small a tilt, while the centroid of the cut runs into a corner. It may lie
+ * outside the cell, by 0.11 (2D) or 0.19 (3D) at most.
  */
-void plane_centroid(const double n[DIM], double alpha, double x[DIM]);
+void plane_foot(const double n[DIM], double alpha, double x[DIM]);
 
 /*
  * Find the normal of the surface, |n|_1 = 1, from the volume fractions of the

@@ -39,10 +39,10 @@ double plane_box_volume(const double n[DIM], double alpha, const double lo[DIM],
   return plane_volume(scaled, alpha);
 }
 
-void plane_centroid(const double n[DIM], double alpha, double x[DIM]) {
-  for (int d = 0; d < DIM; d++) x[d] = 0.;
-  double norm = norm1(n);
-  if (norm <= 0.) return;
-  struct cut cut = cut_sorted(n, norm);
-  cut_centroid(&cut, n, alpha, x);
+void plane_foot(const double n[DIM], double alpha, double x[DIM]) {
+  double squares = 0.;
+  for (int d = 0; d < DIM; d++) squares += n[d] * n[d];
+  for (int d = 0; d < DIM; d++) {
+    x[d] = squares > 0. ? alpha * n[d] / squares : 0.;
+  }
 }

@@ -14,9 +14,10 @@
  * the grains: round-off must not choose. */
 #define ALONG 1e-9
 
-/* Weight of the place that a leaf has from those beside it, by grains: it
- * counts only where a face has no other. */
-#define BESIDE 1e-30
+/* Weight that the place of the surface has in a full leaf, more than in a film
+ * beside it, and in an empty one, which counts where the face has no other. */
+#define FULL 0.01
+#define EMPTY 1e-30
 
 static inline double unit_range(double c) { return min2(max2(c, 0), 1); }
 
@@ -58,7 +59,7 @@ static bool surface_potential(const struct mesh *mesh,
   int count = 0;
   if (vof_is_cut(c[i])) {
     for (int d = 0; d < DIM; d++) n[d] = normal[d][i];
-    plane_centroid(n, plane[i], at);
+    plane_foot(n, plane[i], at);
     count = 1;
   } else {
     for (int f = 0; f < NFACE; f++) {
@@ -75,13 +76,6 @@ static bool surface_potential(const struct mesh *mesh,
         gravity[d] * (mesh->x[i][d] - origin[d] + mesh->h[i] * at[d] / count);
   }
   return true;
-}
-
-/* Return the weight of the place of the surface in a leaf; own: it has one. */
-static double place_weight(const struct gravity *gravity, double c, bool own) {
-  if (!gravity->by_grains) return 1;
-  if (!own) return BESIDE;
-  return vof_is_cut(c) ? max2(c * (1 - c), VOF_EMPTY) : VOF_EMPTY;
 }
 
 /* Give the potential of a leaf with a surface to its neighbours: c interpolated
@@ -105,8 +99,8 @@ static void spread_potential(const struct mesh *mesh,
       count += gravity->count[node];
     }
     gravity->near_surface[i] = count > 0 ? potential / count : 0;
-    gravity->near_count[i] =
-        count > 0 ? place_weight(gravity, c[i], gravity->count[i] > 0) : 0;
+    gravity->near_weight[i] =
+        count > 0 ? max2(c[i] * (1 + FULL - c[i]), EMPTY) : 0;
   }
 }
 
@@ -119,7 +113,7 @@ static void set_surface(const struct mesh *mesh, const double density[2],
   const struct bc *bc[] = {neumann, neumann, neumann};
   double *cells[] = {gravity->surface, gravity->count};
   double *potentials[] = {gravity->weight, gravity->surface};
-  double *ghosts[] = {gravity->near_surface, gravity->near_count};
+  double *ghosts[] = {gravity->near_surface, gravity->near_weight};
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     double weight = 0;
     for (int d = 0; d < DIM; d++) {
@@ -156,7 +150,7 @@ void properties_gravity(const struct mesh *mesh, const double density[2],
           (density[0] - density[1]) * (fraction[node[1]] - fraction[node[0]]);
       double potential = 0, count = 0;
       for (int side = 0; side < 2 && jump != 0; side++) {
-        const double weight = gravity->near_count[leaf[side]];
+        const double weight = gravity->near_weight[leaf[side]];
         potential += weight * gravity->near_surface[leaf[side]];
         count += weight;
       }

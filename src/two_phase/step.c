@@ -103,12 +103,11 @@ static struct gravity describe_gravity(const struct two_phase *sim,
                                        double *const work[5]) {
   const struct params *params = sim->params;
   struct gravity gravity = {.rho = sim->rho->v,
-                            .by_grains = sim->exact,
                             .weight = work[0],
                             .surface = work[1],
                             .count = work[2],
                             .near_surface = work[3],
-                            .near_count = work[4]};
+                            .near_weight = work[4]};
   for (int d = 0; d < DIM; d++) {
     const bool periodic = params->boundary[2 * d].type == BOUNDARY_PERIODIC;
     gravity.bounded[d] = periodic ? 0 : params->gravity[d];

@@ -192,11 +192,10 @@ static double cliff(void *context, const double x[3]) {
 
 /* A cliff with a cohesion k has the stress -rho g depth e_y e_y without
  * yielding as long as rho g H/2 <= mu rho g H/2 + k: H = 2 k/(rho g (1 - mu)) =
- * 0.323 stands. A wedge at 45 degrees + asin(mu)/2 slides at twice that. Under
- * a gas of 1e-3 its edge jerks now and then, at up to 1.5e-5
- * (docs/notes/yield.md). */
+ * 0.323 stands. A wedge at 45 degrees + asin(mu)/2 slides at twice that. Gas
+ * weighs 1e-6 or 1e-3. */
 START_TEST(a_cliff_with_cohesion_stands) {
-  const double gas[] = {1e-6, 1e-3, 1e-3}, most[] = {1e-5, 1e-4, 1};
+  const double gas[] = {1e-6, 1e-3, 1e-3}, most[] = {1e-8, 1e-6, 1};
   double height = _i < 2 ? 0.25 : 0.75;
   struct params p = heap_params(false);
   p.shape = (struct function){cliff, &height};
@@ -207,16 +206,14 @@ START_TEST(a_cliff_with_cohesion_stands) {
   rheology_set(&p.grains.rheology, "cohesion", 0.1);
   struct two_phase *sim = sim_start(&p);
   bool done = run_to(sim, 1);
-  double speed = fastest(sim, 0.01), last = speed;
+  double speed = fastest(sim, 0.01);
   while (done && _i < 2 && sim->model.time < (DIM == 2 ? 5 : 2)) {
     done = step_advance(sim, 1) == EXIT_DONE;
-    last = fastest(sim, 0.01);
-    speed = larger(speed, last);
+    speed = larger(speed, fastest(sim, 0.01));
   }
   two_phase_destroy(sim);
   ck_assert(done);
   ck_assert_msg(speed < most[_i], "%g", speed);
-  ck_assert_msg(_i > 0 || last < 1e-6, "%g", last);
   ck_assert_msg(_i < 2 || speed > 1e-2, "%g", speed);
 }
 END_TEST

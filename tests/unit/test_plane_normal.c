@@ -119,8 +119,8 @@ static double ball_volume(const double x[DIM], const double centre[DIM],
   return volume;
 }
 
-/* Return the rms angle of the normal to the radius through the centroid of the
- * cut. */
+/* Return the rms angle of the normal to the radius through the foot of the
+ * plane. */
 static double ball_error(double radius, uint64_t *state) {
   double squares = 0.;
   int count = 0;
@@ -138,7 +138,7 @@ static double ball_error(double radius, uint64_t *state) {
     }
     if (c[CENTRE] < 1e-6 || c[CENTRE] > 1. - 1e-6) continue;
     plane_normal(c, NULL, m);
-    plane_centroid(m, plane_alpha(m, c[CENTRE]), x);
+    plane_foot(m, plane_alpha(m, c[CENTRE]), x);
     for (int d = 0; d < DIM; d++) x[d] -= centre[d];
     double error = angle_between(m, x);
     squares += error * error;

@@ -27,17 +27,17 @@
  * gradient of W is -[rho] g.(x_S - Z) grad c with x_S on the surface, which is
  * a gradient if the surface is at rest. So it is discretised as that of p is,
  * over levels too: a_f = ((W_1 - W_0) - [rho] g.(x_S - Z) (c_1 - c_0)) / (rho_f
- * h) from the nodes of the face, W and c filled as p is (mesh_fill_potential);
- * x_S is the mean over its leaves of the centroids of their planes. Away from
- * the surface a_f = g_d. A flat bed at any angle with its gravity then rests to
- * round-off. Gravity along a periodic axis has no potential and is added as a
- * constant.
+ * h) from the nodes of the face, W and c filled as p is (mesh_fill_potential).
+ * Away from the surface a_f = g_d. A flat bed at any angle with its gravity
+ * then rests to round-off. Gravity along a periodic axis has no potential and
+ * is added as a constant.
  *
- * With an exact yield a leaf counts for c (1 - c) in that mean, which vanishes
- * where its plane comes and goes, and one without a plane asks the leaves
- * beside it only where no leaf of the face has one. By the even mean a leaf
- * that took c = 3e-6 had half a say, and one beside a film was driven by 0.45 g
- * on a slope that holds 0.32 g (docs/notes/yield.md).
+ * x_S is the mean over the leaves of the face of the feet of their planes
+ * (plane.h), or of those beside a leaf that has none. A leaf counts for
+ * c (1.01 - c): a plane that comes or goes with the last of the grains or of
+ * the gas moves nothing. By the even mean a leaf that took c = 3e-6 had half a
+ * say, and one beside a film was driven by 0.45 g on a slope that holds 0.32 g
+ * (docs/notes/yield.md).
  */
 #ifndef TALUS_TWO_PHASE_PROPERTIES_H
 #define TALUS_TWO_PHASE_PROPERTIES_H
@@ -61,10 +61,9 @@ struct gravity {
   double periodic[DIM]; /* along periodic axes */
   double origin[DIM];   /* Z, anywhere in the box */
   const double *rho;    /* [ncells] filled, by which p is; NULL: as if even */
-  bool by_grains;       /* x_S of a face by c (1 - c) (above) */
   /* scratch [ncells]: W; g.(x_S - Z) and 1 in leaves with a surface, else 0;
-   * the same with the leaves next to them */
-  double *weight, *surface, *count, *near_surface, *near_count;
+   * with the leaves next to them, g.(x_S - Z) and what it counts */
+  double *weight, *surface, *count, *near_surface, *near_weight;
 };
 
 /* Set gravity_f [nfaces_all] to a_f, m/s^2, 0 on closed patches. c filled;
