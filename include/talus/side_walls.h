@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Side walls: the friction of a narrow channel that is computed in its plane.
  *
- * Grains slide on two walls a distance W apart. The mean over the width of
- * the momentum equation then holds the force per unit volume
- *   f = -(2 mu_w p/W) u/|u|                                    [jop_2005]
- * besides what is in the plane. It is taken in with the implicit viscous step
- * as a drag, f = -drag u, added to the density on the diagonal:
- *   (rho + dt drag) u - ... = rho u*,    drag = c 2 mu_w p/(W speed).
- * With k = c 2 mu_w p/(W rho) and u* the velocity without friction,
- *   speed = max(|u* + dt v| - dt k, |u^n|, s),
- * v the viscous acceleration of the last step. The first is what a cell that
- * slides will have; |u^n| keeps friction from growing when v is a bad guess,
- * and makes it lag (by a part dt k/u while grains slow down); s is
- * SIDE_WALLS_CREEP of sqrt(g L), L the box: where friction could take more
- * than there is, grains are held, and creep at about s. Without v a plug would
- * creep at g dt, as friction that some of its cells do not need would not be
- * lent to the others.
+ * Grains slide on two walls a distance W apart. The mean over the width of the
+ * momentum equation then holds the force per unit volume
+ *   f = -F u/|u|,   F = c 2 mu_w p/W                           [jop_2005]
+ * besides what is in the plane. Where grains rest f is what holds them, |f| <=
+ * F. As the stress of an exact yield (yield.h) it is a field, kept from step to
+ * step:
+ *   f^{n+1} = P(f^n - r u^{n+1}),   P(f) = f min(1, F/|f|),
+ * for any r; here r = 100 rho/dt, with which a plug that is held loses nine
+ * tenths of its speed in a step, and one that is to be held gains a hundredth
+ * of g dt. It is linear in the implicit viscous step, held:   (rho + dt r) u -
+ * ... = rho u* + dt f^n slides: rho u - ...          = rho u* + dt F f'/|f'|
+ * where f' = f^n - r u' foretells f^{n+1}, from the u' that a leaf would have
+ * by itself, (rho + dt r) u' = rho (u* + dt v) + dt f^n, v the viscous
+ * acceleration of the last step: it slides if |f'| > F.
  *
  * Valid while the flow varies little across the channel. Two dimensions.
  */
@@ -25,23 +24,29 @@
 #include "talus/mesh.h"
 #include "talus/params.h"
 
-#define SIDE_WALLS_CREEP 1e-6
-
-/* drag [nleaves], kg/m^3/s, for one step dt.
- *   creep  s above, m/s, > 0
- *   rho, c, p  [nleaves], of the mixture, fraction and pressure
- *   u, u_old   [nleaves] each: u* + dt v, and u^n */
+/* Where grains are, arrays [nleaves]: density of the mixture, fraction,
+ * pressure, kg/m^3, 1, Pa. */
 struct side_walls_state {
   const double *rho, *c, *p;
-  const double *u[DIM], *u_old[DIM];
 };
-void side_walls_drag(const struct mesh *mesh, const struct side_walls *walls,
-                     double dt, double creep,
-                     const struct side_walls_state *state, double *drag);
 
-/* Return the power, W/m, that goes into the walls: sum drag |u|^2 V.
- * Collective. */
-double side_walls_power(const struct mesh *mesh, const double *drag,
+/* Set what a step of dt takes into its solve, [nleaves] each: mass to rho or
+ * rho + dt r, f from f^n to the force on the right, N/m^3. u: u* + dt v. */
+void side_walls_foretell(const struct mesh *mesh,
+                         const struct side_walls *walls, double dt,
+                         const struct side_walls_state *state,
+                         double *const u[DIM], double *const f[DIM],
+                         double *mass);
+
+/* Set f, as side_walls_foretell left it, to f^{n+1} from the u that was solved
+ * for with this mass. */
+void side_walls_advance(const struct mesh *mesh, const struct side_walls *walls,
+                        double dt, const struct side_walls_state *state,
+                        const double *mass, double *const u[DIM],
+                        double *const f[DIM]);
+
+/* Return the power, W/m, that goes into the walls: -sum f.u V. Collective. */
+double side_walls_power(const struct mesh *mesh, double *const f[DIM],
                         double *const u[DIM]);
 
 #endif

@@ -9,7 +9,7 @@
 static const char *const TAKEN[] = {
     /* simulation */
     "fraction", "pressure", "density", "viscosity", "velocity", "acceleration",
-    "frozen", "plane", "band", "drag", "shear_rate", "stress", "acceleration_",
+    "frozen", "plane", "band", "wall_", "shear_rate", "stress", "acceleration_",
     "face_", "velocity_", "viscous_", "normal_", "old_", "cell_", "source",
     "carrier", "stress_", "strain_", "yield_stress", "yield_state",
     /* snapshots and checkpoints */

@@ -4,32 +4,65 @@
 
 #include <math.h>
 
-static double speed_of(const double *const u[DIM], int32_t i) {
-  double u2 = 0;
-  for (int d = 0; d < DIM; d++) u2 += u[d][i] * u[d][i];
-  return sqrt(u2);
+/* r dt/rho */
+#define STIFFNESS 100.
+
+/* Return F, the most that the walls take. */
+static double friction(const struct side_walls *walls,
+                       const struct side_walls_state *state, int32_t i) {
+  const double c = min2(max2(state->c[i], 0), 1);
+  return c * 2 * walls->mu * max2(state->p[i], 0) / walls->width;
 }
 
-void side_walls_drag(const struct mesh *mesh, const struct side_walls *walls,
-                     double dt, double creep,
-                     const struct side_walls_state *state, double *drag) {
-  const double factor = 2 * walls->mu / walls->width;
+static double norm(const double f[DIM]) {
+  double squares = 0;
+  for (int d = 0; d < DIM; d++) squares += f[d] * f[d];
+  return sqrt(squares);
+}
+
+void side_walls_foretell(const struct mesh *mesh,
+                         const struct side_walls *walls, double dt,
+                         const struct side_walls_state *state,
+                         double *const u[DIM], double *const f[DIM],
+                         double *mass) {
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double c = min2(max2(state->c[i], 0), 1);
-    const double force = factor * c * max2(state->p[i], 0); /* N/m^3 */
-    const double slides = speed_of(state->u, i) - dt * force / state->rho[i];
-    const double speed = max2(slides, speed_of(state->u_old, i));
-    drag[i] = force / max2(speed, creep);
+    const double rho = state->rho[i], most = friction(walls, state, i);
+    double next[DIM];
+    for (int d = 0; d < DIM; d++) {
+      next[d] = (f[d][i] - STIFFNESS * rho / dt * u[d][i]) / (1 + STIFFNESS);
+    }
+    const double needed = norm(next);
+    const bool held = most > 0 && needed <= most;
+    mass[i] = held ? (1 + STIFFNESS) * rho : rho;
+    for (int d = 0; d < DIM && !held; d++) {
+      f[d][i] = needed > 0 ? next[d] * (most / needed) : 0;
+    }
   }
-  mesh_touch(mesh, drag);
+  mesh_touch(mesh, mass);
+  for (int d = 0; d < DIM; d++) mesh_touch(mesh, f[d]);
 }
 
-double side_walls_power(const struct mesh *mesh, const double *drag,
+void side_walls_advance(const struct mesh *mesh, const struct side_walls *walls,
+                        double dt, const struct side_walls_state *state,
+                        const double *mass, double *const u[DIM],
+                        double *const f[DIM]) {
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double r = (mass[i] - state->rho[i]) / dt;
+    double next[DIM];
+    for (int d = 0; d < DIM; d++) next[d] = f[d][i] - r * u[d][i];
+    const double needed = norm(next), most = friction(walls, state, i);
+    const double part = needed > most ? most / needed : 1;
+    for (int d = 0; d < DIM; d++) f[d][i] = part * next[d];
+  }
+  for (int d = 0; d < DIM; d++) mesh_touch(mesh, f[d]);
+}
+
+double side_walls_power(const struct mesh *mesh, double *const f[DIM],
                         double *const u[DIM]) {
   double sum = 0;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     for (int d = 0; d < DIM; d++) {
-      sum += drag[i] * u[d][i] * u[d][i] * mesh_volume(mesh, i);
+      sum -= f[d][i] * u[d][i] * mesh_volume(mesh, i);
     }
   }
   return mesh_sum(mesh, sum);

@@ -160,8 +160,11 @@ static void add_known(struct two_phase *sim) {
 }
 
 static void add_walls(struct two_phase *sim) {
-  sim->drag = add_cell(sim, "drag", "kg/m^3/s", "drag of the side walls",
-                       &remap_average, false);
+  static const char *const name[] = {"wall_x", "wall_y", "wall_z"};
+  for (int d = 0; d < DIM; d++) {
+    sim->wall[d] = add_cell(sim, name[d], "N/m^3", "force of the side walls",
+                            &remap_average, false);
+  }
 }
 
 /* Add the scratch of gas that leaves through the grains (percolation.h). */
@@ -210,7 +213,8 @@ static void add_scratch(struct two_phase *sim) {
   sim->u_f->old = sim->u_half; /* when a step has failed */
   /* for a predictor with viscosity, or sweeps in two orders */
   const bool more = sim->params->theta < 1 || sim->exact || DIM == 3;
-  const int ncells = (more ? 3 : 2) * DIM + 1;
+  const int walls = sim->wall[0] != NULL; /* have their mass */
+  const int ncells = (more ? 3 : 2) * DIM + 1 + walls;
   scratch_init(&sim->scratch, &sim->grid.fields, &sim->grid.mesh, ncells,
                sim->exact ? sim->yield.nrows + 4 : DIM + 2);
 }

@@ -33,9 +33,9 @@
  * and, once or repeatedly with eta_f of the latest u and p (repeat_properties;
  * in the first step of a run from rest at least START_REPETITIONS times),
  * velocities_diffuse   with "exact" as yield.h says, else
- *     (rho + dt drag) u* - theta dt div(2 eta D(u*))
- *         = rho (u + dt g) + (1 - theta) dt div(2 eta D(u^n))
- *     v = (u* - u)/dt - g + drag/rho u*
+ *     rho u* - theta dt div(2 eta D(u*))
+ *         = rho (u + dt g) + (1 - theta) dt div(2 eta D(u^n)) + dt f
+ *     v = (u* - u)/dt - g - f/rho,   f of side walls (side_walls.h)
  *     u* <- u* - dt g
  * pressures_project
  *     u_f = mean of u* on both sides, by mass, + dt gravity_f, with "exact"
@@ -198,11 +198,10 @@ static int count_repetitions(const struct two_phase *sim) {
 }
 
 static void add_wall_work(struct two_phase *sim, double dt) {
-  double *u[DIM];
-  if (!sim->drag) return;
-  field_arrays(sim->u, u);
-  sim->energy.dissipated +=
-      dt * side_walls_power(sim->grid.mesh, sim->drag->v, u);
+  double *u[DIM], *f[DIM];
+  if (!sim->wall[0]) return;
+  field_arrays(sim->u, u), field_arrays(sim->wall, f);
+  sim->energy.dissipated += dt * side_walls_power(sim->grid.mesh, f, u);
 }
 
 /* Does the grid follow more than the surface? */

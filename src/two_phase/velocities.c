@@ -20,15 +20,14 @@
 static void predictor_acceleration(struct two_phase *sim, double *g[DIM]) {
   static const struct bc neumann[MESH_MAX_PATCHES];
   const struct bc *bc[DIM];
-  const double *drag = sim->drag ? sim->drag->v : NULL;
+  const bool walls = sim->wall[0] != NULL;
   const double *still = sim->params->theta < 1 ? NULL : sim->yield.still->v;
   scratch_take(&sim->scratch, FIELD_CELL, "predictor", DIM, g);
   for (int e = 0; e < DIM; e++) {
     bc[e] = neumann;
     for (int32_t i = 0; i < sim->grid.mesh->nleaves; i++) {
-      const double u = sim->u_old[e]->v[i];
       double lost = sim->viscous_g[e]->v[i];
-      if (drag) lost -= drag[i] * u / sim->rho->v[i];
+      if (walls) lost += sim->wall[e]->v[i] / sim->rho->v[i];
       g[e][i] = sim->g[e]->v[i] + (still ? still[i] : 1) * lost;
     }
   }
@@ -118,32 +117,39 @@ static double velocity_scale(const struct two_phase *sim, double dt) {
   return mesh_max(sim->grid.mesh, most);
 }
 
-/* Find rho + dt drag of the side walls, in scratch that diffuse_momentum gives
- * back. */
-static const double *mass_with_walls(struct two_phase *sim, double dt) {
-  const struct mesh *mesh = sim->grid.mesh;
-  const struct params *params = sim->params;
-  double gravity = 0, *u[DIM];
-  double *mass = scratch_take_one(&sim->scratch, FIELD_CELL, "mass");
-  struct side_walls_state state = {
+static struct side_walls_state walls_state(const struct two_phase *sim) {
+  return (struct side_walls_state){
       .rho = sim->rho->v, .c = sim->c->v, .p = sim->p->v};
+}
+
+/* Find the mass with the stiffness of side walls, in scratch that
+ * velocities_diffuse gives back, and the force that they have beside it. */
+static const double *foretell_walls(struct two_phase *sim, double dt) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const struct side_walls_state state = walls_state(sim);
+  double *u[DIM], *f[DIM];
+  double *mass = scratch_take_one(&sim->scratch, FIELD_CELL, "mass");
+  field_arrays(sim->wall, f);
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, u);
   for (int e = 0; e < DIM; e++) {
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       u[e][i] =
           sim->u[e]->v[i] + dt * (sim->g[e]->v[i] + sim->viscous_g[e]->v[i]);
     }
-    gravity = max2(gravity, fabs(params->gravity[e]));
-    state.u[e] = u[e], state.u_old[e] = sim->u_old[e]->v;
   }
-  const double creep =
-      max2(SIDE_WALLS_CREEP * sqrt(gravity * params->size), 1e-300);
-  side_walls_drag(mesh, &params->side_walls, dt, creep, &state, sim->drag->v);
+  side_walls_foretell(mesh, &sim->params->side_walls, dt, &state, u, f, mass);
   scratch_give(&sim->scratch, __func__);
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    mass[i] = sim->rho->v[i] + dt * sim->drag->v[i];
-  }
   return mass;
+}
+
+/* Set the force of the side walls to that of the velocity found. */
+static void advance_walls(struct two_phase *sim, double dt, const double *mass,
+                          double *const u[DIM]) {
+  const struct side_walls_state state = walls_state(sim);
+  double *f[DIM];
+  field_arrays(sim->wall, f);
+  side_walls_advance(sim->grid.mesh, &sim->params->side_walls, dt, &state, mass,
+                     u, f);
 }
 
 /* Solve the viscous equation with this viscosity. */
@@ -193,15 +199,19 @@ void velocities_diffuse(struct two_phase *sim, double dt, int k) {
   double *u[DIM], *rhs[DIM];
   const struct bc *bc[DIM];
   field_arrays(sim->u, u);
+  const bool walls = sim->wall[0] != NULL;
   const double *rho = sim->rho->v;
-  const double *mass = sim->drag ? mass_with_walls(sim, dt) : rho;
+  const double *mass = walls ? foretell_walls(sim, dt) : rho;
   scratch_take(&sim->scratch, FIELD_CELL, __func__, DIM, rhs);
   for (int e = 0; e < DIM; e++) bc[e] = sim->u[e]->bc;
   viscous_rhs(sim, dt, rhs);
   for (int e = 0; e < DIM; e++) {
+    const double *f = walls ? sim->wall[e]->v : NULL;
     double *viscous_g = sim->viscous_g[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      const double inviscid = u[e][i] + dt * sim->g[e]->v[i];
+      const double pushed = f ? dt * f[i] / rho[i] : 0;
+      rhs[e][i] += rho[i] * pushed;
+      const double inviscid = u[e][i] + dt * sim->g[e]->v[i] + pushed;
       u[e][i] = (inviscid + dt * viscous_g[i]) * (rho[i] / mass[i]);
       viscous_g[i] = inviscid; /* until the solve is done */
     }
@@ -212,15 +222,16 @@ void velocities_diffuse(struct two_phase *sim, double dt, int k) {
   } else {
     sim->viscous = solve_viscous(sim, dt, mass, sim->eta_f->v, rhs, bc, u);
   }
+  if (walls) advance_walls(sim, dt, mass, u);
   for (int e = 0; e < DIM; e++) {
     double *viscous_g = sim->viscous_g[e]->v;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      const double lost = u[e][i] * (mass[i] / rho[i] - 1); /* to the walls */
-      viscous_g[i] = (u[e][i] - viscous_g[i] + lost) / dt;
+      const double held = u[e][i] * (mass[i] / rho[i] - 1); /* by walls */
+      viscous_g[i] = (u[e][i] - viscous_g[i] + held) / dt;
       u[e][i] -= dt * sim->g[e]->v[i];
     }
     mesh_touch(mesh, viscous_g), mesh_touch(mesh, u[e]);
   }
   scratch_give(&sim->scratch, __func__);
-  if (sim->drag) scratch_give(&sim->scratch, "mass");
+  if (walls) scratch_give(&sim->scratch, "mass");
 }

@@ -44,13 +44,13 @@ static void boundary_power(const struct two_phase *sim, const double density[2],
 static void viscous_power(const struct two_phase *sim, double dt,
                           const double density[2], double power[2]) {
   const struct mesh *mesh = sim->grid.mesh;
-  const double *drag = sim->drag ? sim->drag->v : NULL;
   for (int e = 0; e < DIM; e++) {
     const double *g = sim->g[e]->v, *v = sim->viscous_g[e]->v;
+    const double *f = sim->wall[e] ? sim->wall[e]->v : NULL;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
       const double u = sim->u[e]->v[i], c = sim->c->v[i];
-      const double friction = drag ? drag[i] * u / sim->rho->v[i] : 0;
-      const double mean = u - 0.5 * dt * (g[i] + v[i] - friction);
+      const double walls = f ? f[i] / sim->rho->v[i] : 0;
+      const double mean = u - 0.5 * dt * (g[i] + v[i] + walls);
       const double each = v[i] * mean * mesh_volume(mesh, i);
       power[0] += c * density[0] * each;
       power[1] += (1 - c) * density[1] * each;

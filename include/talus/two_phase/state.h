@@ -71,7 +71,7 @@ struct two_phase {
                                  * without the friction of side walls */
   bool exact; /* the grains yield exactly, else by their viscosity */
   struct yield yield;
-  struct field *drag; /* of side walls (side_walls.h); NULL: none */
+  struct field *wall[DIM]; /* force of side walls (side_walls.h); NULL: none */
 
   /* Gas that leaves through the grains (percolation.h); NULL: none may */
   struct field *source;  /* of volume, 1/s: < 0 where gas is enclosed */
