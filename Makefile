@@ -116,7 +116,7 @@ demo: setup ## column collapse with pictures: half a minute on two cores, mostly
 	$(BUILD)/talus plot $(BUILD)/demo
 	@echo "The pictures are in $(BUILD)/demo:"; ls $(BUILD)/demo/*.[pg][ni][gf]
 
-check: setup ## all tests, in a quarter of an hour on two cores
+check: setup ## all tests, in four to five minutes on two free cores
 	$(AGAIN) all tests
 	@tests/run.sh $(BUILD) format includes unit mesh case
 check-unit check-mesh check-case: check-%: ## one group of them

@@ -160,12 +160,14 @@ END_TEST
 
 Suite *pressure_level_suite(void) {
   Suite *suite = suite_create("pressure_level");
-  TCase *tcase = tcase_create("closed box");
+  TCase *tcase = tcase_create("closed box"), *alone = tcase_create("collapse");
+  tcase_set_tags(alone, "one_rank");
   tcase_add_test(tcase, gas_in_a_closed_box_has_the_pressure_of_an_open_one);
   tcase_add_loop_test(tcase, a_point_has_the_pressure_of_the_case, 0, 6);
   tcase_add_loop_test(tcase, means_are_by_volume, 0, 3);
   tcase_add_test(tcase, without_gas_the_mean_of_the_box_is_taken);
-  tcase_add_test(tcase, a_column_collapses_as_under_an_open_sky);
+  tcase_add_test(alone, a_column_collapses_as_under_an_open_sky);
   suite_add_tcase(suite, tcase);
+  suite_add_tcase(suite, alone);
   return suite;
 }
