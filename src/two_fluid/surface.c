@@ -66,13 +66,12 @@ static void find_carried(const struct two_fluid *sim, int axis, double *load) {
   mesh_touch(mesh, load);
 }
 
-/* Has leaf i grains, and more than that on the side away from `below`, which is
- * no bed? */
+/* Has leaf i grains, and more than that on the side away from `below`? */
 static bool is_highest(const struct two_fluid *sim, int32_t i, int below) {
   const struct mesh *mesh = sim->grid.mesh;
   const int32_t above = mesh->stencil[i][stencil_face(below ^ 1)];
   return two_fluid_has_grains(sim, i) &&
-         (sim->alpha->v[above] < min2(sim->alpha->v[i], loosest_bed(sim, i)) ||
+         (sim->alpha->v[above] < sim->alpha->v[i] ||
           two_fluid_is_side(sim, mesh->cell_face[i][below ^ 1]));
 }
 

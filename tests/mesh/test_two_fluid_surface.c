@@ -41,35 +41,6 @@ static bool run_heap(const struct params *p, struct two_fluid_measures *before,
   return done;
 }
 
-/* Return the mean flux of grains in the middle half of a box that they fill at
- * the loosest packing of their closures, after they have settled for 0.2 s. */
-static double settling_flux(enum two_fluid_surface surface) {
-  struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_WATER);
-  keys.start = TWO_FLUID_PATCHED, keys.surface = surface;
-  keys.alpha_start = keys.closure.param[TWO_FLUID_KT_PHI_FR];
-  const struct params p = grains_params(&keys, 0.16, DIM == 2 ? 5 : 4);
-  struct two_fluid *sim = grains_new(&p);
-  const struct mesh *mesh = sim->grid.mesh;
-  double sum = grains_run(sim, 0.2, 100) ? 0 : NAN;
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    if (fabs(mesh->x[i][DIM - 1] - 0.08) < 0.04)
-      sum += mesh_volume(mesh, i) *
-             mesh_mean_along(mesh, sim->flux->v, i, DIM - 1);
-  }
-  sum = mesh_sum(mesh, sum);
-  two_fluid_destroy(sim);
-  return sum;
-}
-
-/* Grains that are nearly packed settle through the fluid: no leaf among others
- * of the same solid fraction is the surface of a bed. */
-START_TEST(a_suspension_has_no_surface) {
-  const double flux = settling_flux(TWO_FLUID_NO_SURFACE);
-  ck_assert_double_lt(flux, 0);
-  ck_assert_double_eq_tol(settling_flux(TWO_FLUID_PLANES) / flux, 1, 5e-4);
-}
-END_TEST
-
 /* A heap of 20 degrees whose grains repose at 31 stands, and slides if they
  * repose at 17, or if closures read the solid fraction of leaves. */
 START_TEST(a_heap_stands) {
@@ -176,7 +147,6 @@ Suite *two_fluid_surface_suite(void) {
   TCase *leaf = tcase_create("leaf"), *flow = tcase_create("flow");
   tcase_add_test(leaf, a_leaf_is_filled_in_part);
   tcase_add_test(leaf, a_cut_leaf_hardens_as_a_full_one);
-  tcase_add_test(flow, a_suspension_has_no_surface);
   if (DIM == 2) tcase_add_loop_test(flow, a_heap_stands, 0, 3);
   if (DIM == 2) tcase_add_test(flow, a_heap_that_yields_exactly_holds);
   suite_add_tcase(suite, leaf);

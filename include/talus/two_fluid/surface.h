@@ -18,8 +18,8 @@
  * as they are in the continuum: the difference of p_s from leaf to leaf is the
  * weight between their middles, (alpha_0 + alpha_1)/2 of it. A leaf rests on a
  * wall, on a bed, or on a leaf below that carries the weight of half of its own
- * grains; and it has fewer grains above than it holds itself, and no bed, and
- * they lie half a grain thick.
+ * grains; and it has fewer grains above than it holds itself, which lie half a
+ * grain thick.
  *
  * phi. Grains that shear get denser than they were before they carry their
  * load again only as fast as fluid leaves them, and a thin front of them runs
@@ -48,7 +48,10 @@
  * surface was twice as steep or more. With W the sum over both leaves of a
  * column is (c_0 + c_1)^2/2 of it.
  *
- * The key grains.surface turns this on (docs/notes/two_fluid.md).
+ * The key grains.surface turns this on. It is not the default: with an exact
+ * yield heaps and flat beds stand, and loose grains under liquid run as far as
+ * they should, but dry and inertial collapses stop short, and fluidised beds
+ * and suspensions have not been run with it (docs/notes/two_fluid.md).
  *
  * Faces of such a leaf pass phi times the part of the volume swept that the
  * plane of c fills (vof.h): nothing where the bed does not reach.
