@@ -10,11 +10,12 @@
  *   f^{n+1} = P(f^n - r u^{n+1}),   P(f) = f min(1, F/|f|),
  * for any r; here r = 100 rho/dt, with which a plug that is held loses nine
  * tenths of its speed in a step, and one that is to be held gains a hundredth
- * of g dt. It is linear in the implicit viscous step, held:   (rho + dt r) u -
- * ... = rho u* + dt f^n slides: rho u - ...          = rho u* + dt F f'/|f'|
- * where f' = f^n - r u' foretells f^{n+1}, from the u' that a leaf would have
- * by itself, (rho + dt r) u' = rho (u* + dt v) + dt f^n, v the viscous
- * acceleration of the last step: it slides if |f'| > F.
+ * of g dt. The implicit viscous step has of it
+ *   (rho + dt r) u - ... = rho u* + dt f^n       where grains are held,
+ *   rho u - ...          = rho u* + dt F f'/|f'| where they slide.
+ * They slide if |f'| > F: f' = f^n - r u' foretells f^{n+1}, from the u' that a
+ * leaf would have by itself, (rho + dt r) u' = rho (u* + dt v) + dt f^n, v the
+ * viscous acceleration of the last step.
  *
  * Valid while the flow varies little across the channel. Two dimensions.
  */
