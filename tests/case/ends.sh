@@ -41,7 +41,7 @@ grep -q '^the cap eta_max = 10 lets slopes .* creep at up to 0.0224' \
 [ "$(tail -n 1 whole/series.csv | cut -d, -f2)" = \
   "$(tail -n 1 whole/profile.csv | cut -d, -f1)" ] ||
   complain "no outline of the end"
-ends 5 '^stopped by --max-steps' run heap.lua -o parts --max-steps 110
+ends 5 '^stopped by --max-steps' run heap.lua -o parts --max-steps 79
 ends 0 '^at rest at step' run heap.lua -o parts --restart
 for name in whole parts; do
   cut -d, -f1-13,15- $name/series.csv > $name.csv
