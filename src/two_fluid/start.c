@@ -262,8 +262,10 @@ void two_fluid_check_packing(const struct params *params) {
   const double deepest = depths_deepest(params, axis);
   const double foot = depths_at(&depths, deepest);
   const double allowed = depth_of(&depths, c.by.phi_m);
+  const struct two_fluid_keys *keys = params->own;
+  const bool packs = foot < 1 || keys->start == TWO_FLUID_SETTLED;
   depths_free(&depths);
-  if (foot >= c.by.phi_m)
+  if (packs && foot >= c.by.phi_m)
     USER_ERROR(
         "a heap of %.3g m packs its foot to a solid fraction of %.4f, and "
         "closure = \"%s\" has no shear beyond phi_m = %g: such grains burst "

@@ -12,7 +12,8 @@ struct two_fluid;
 
 /* Refuse grains whose own weight packs the foot of their heap beyond what can
  * shear, the key phi_m of their closures: it would burst as it gives way,
- * whatever it starts from. A USER_ERROR says so. */
+ * whatever it starts from. A USER_ERROR says so. Suspensions whose contacts
+ * would not carry them at any packing pass, if they do not start settled. */
 void two_fluid_check_packing(const struct params *params);
 struct two_fluid *two_fluid_new(const struct params *params,
                                 const struct model_start *start);
