@@ -29,6 +29,7 @@ double depths_at(const struct depths *depths, double depth);
  */
 double depths_below(const struct params *params, int axis, double step,
                     const double x[3]);
+
 /* Return the height of the highest column of the shape, from 64 columns along
  * each horizontal axis and 256 points of each, m. */
 double depths_deepest(const struct params *params, int axis);
