@@ -196,6 +196,7 @@ void four_state_measure(struct four_state *sim, struct four_state_measures *m) {
   }
   m->max_nu = mesh_max(mesh, nu);
   m->max_pressure = mesh_max(mesh, p);
+  field_fill(mesh, sim->nu);
   find_contour(sim, m);
   find_outline(sim, m);
 }

@@ -46,8 +46,8 @@ static double face_weight(const struct two_phase *sim, double few, int32_t f) {
   const int32_t *leaf = sim->grid.mesh->face_leaf[f];
   double least = 1;
   bool grains = false;
+  if (leaf[0] < 0 || leaf[1] < 0) return 0;
   for (int side = 0; side < 2; side++) {
-    if (leaf[side] < 0 || leaf[!side] < 0) return 0;
     const double c = sim->c->v[leaf[side]];
     const double counted = HOLDS_GRAINS * sim->c->v[leaf[!side]];
     if (!(c > few)) continue;

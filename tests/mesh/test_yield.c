@@ -499,6 +499,8 @@ START_TEST(springs_stiffen_as_a_flow_dies) {
   struct params p = periodic_params(2);
   double worst = 0;
   p.grains.rheology = exact_closure("bingham");
+  rheology_set(&p.grains.rheology, "tau_y", 3);
+  rheology_set(&p.grains.rheology, "eta_0", 1);
   struct two_phase *sim = sim_new(&p, MPI_COMM_WORLD);
   const struct mesh *mesh = sim->grid.mesh;
   double *r, *eta;
