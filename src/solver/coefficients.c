@@ -106,7 +106,7 @@ static void merge_sides(struct hierarchy *h, int l) {
         if ((c >> d & 1) == 0) in += 0.5 * (double)within[i];
       }
       h->w[f][parent[k]] = (float)out;
-      limit[k] = (float)(out / max2(max2(in, out), DBL_MIN));
+      limit[k] = (float)(max2(out, 0) / max2(max2(in, out), DBL_MIN));
     }
   }
 }

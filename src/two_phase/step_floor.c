@@ -100,8 +100,9 @@ static void place_text(const struct worst *worst, size_t size, char *text) {
  * the step, which has bounds of its own. */
 static void cause_text(const struct two_phase *sim, const struct worst *flow,
                        const struct worst *forces, size_t size, char *text) {
-  const double by_flow = log(flow->rate * sim->model.dt / sim->params->cfl);
-  const double by_forces = log(forces->rate * sim->model.dt);
+  const double dt = sim->model.dt;
+  const double by_flow = log(max2(flow->rate * dt / sim->params->cfl, DBL_MIN));
+  const double by_forces = log(max2(forces->rate * dt, DBL_MIN));
   char place[160];
   place_text(forces, sizeof place, place);
   if (by_flow < -2 && by_forces < -2)

@@ -224,6 +224,28 @@ START_TEST(horizontal_axes_are_alike) {
 }
 END_TEST
 
+/* Sides of leaves are walls at the sides of the box only, not where levels
+ * jump. */
+START_TEST(walls_are_the_sides_of_the_box) {
+  double z[] = {-1, 0.1}, wrong = 0;
+  struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_WATER);
+  struct params p = with_levels(grains_params(&keys, 0.16, LEVEL), 1);
+  p.shape = (struct function){bed, z};
+  struct two_fluid *sim = grains_new(&p);
+  const struct mesh *mesh = sim->grid.mesh;
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    for (int s = 0; s < NFACE; s++) {
+      const bool edge =
+          mesh->stencil[i][stencil_face(s)] >= mesh->begin_boundary;
+      wrong += two_fluid_is_side(sim, mesh->cell_face[i][s]) != edge;
+    }
+  }
+  wrong = mesh_sum(mesh, wrong);
+  two_fluid_destroy(sim);
+  ck_assert_double_eq(wrong, 0);
+}
+END_TEST
+
 Suite *two_fluid_suite(void) {
   Suite *suite = suite_create("two_fluid");
   TCase *rest = tcase_create("rest"), *flow = tcase_create("flow");
@@ -235,6 +257,7 @@ Suite *two_fluid_suite(void) {
   if (DIM == 2) tcase_add_loop_test(alone, a_plastic_bed_rests, 0, 2);
   tcase_add_test(alone, a_bed_falls_and_lands);
   tcase_add_test(flow, grains_carry_tracers);
+  tcase_add_test(flow, walls_are_the_sides_of_the_box);
   if (DIM == 3) tcase_add_loop_test(flow, horizontal_axes_are_alike, 0, 2);
   tcase_add_loop_test(flow, uniform_motion_stays, 0, DIM == 2 ? 2 : 1);
   suite_add_tcase(suite, rest);

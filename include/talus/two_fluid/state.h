@@ -151,9 +151,10 @@ static inline bool two_fluid_has_grains(const struct two_fluid *sim,
   return sim->alpha->v[i] >= TWO_FLUID_NONE;
 }
 /* Is face f a wall to the grains? All sides of the box that are not periodic
- * are. */
+ * are; the side of a leaf that is several faces (mesh.h) is none. */
 static inline bool two_fluid_is_side(const struct two_fluid *sim, int32_t f) {
-  return sim->grid.mesh->face_patch[f] >= 0;
+  const struct mesh *mesh = sim->grid.mesh;
+  return f < mesh->nfaces && mesh->face_patch[f] >= 0;
 }
 
 #endif
