@@ -280,8 +280,7 @@ END_TEST
 
 /* Grains fill the box up to x = 1/2 and gas the rest, with c = 1e-7 to 3e-7 in
  * the leaves beside the cliff. Whichever way the planes of these lean, gravity
- * has no part across it; by centroids, which run into corners, it had half of
- * all. */
+ * has no part across it; by places in their corners it had 0.998 of all. */
 START_TEST(a_film_beside_a_cliff_moves_no_surface) {
   struct bench *b = bench_new(1, false, 4, 4);
   const struct mesh *mesh = b->mesh;
