@@ -145,14 +145,17 @@ static void end_light(struct two_phase *sim) {
   scratch_give(&sim->scratch, "light");
 }
 
-/* Make u_f the solenoidal part of the mean of u^{n+1} on both sides of a face,
- * which vanishes where grains rest (yield.h). */
+/* Let the faces of slow grains move with u^{n+1}, and make u_f solenoidal again
+ * (still.h). */
 static void carry_with_grains(struct two_phase *sim,
                               const struct projection *light, double dt) {
   double *u[DIM];
   field_arrays(sim->u, u);
   field_fill_many(sim->grid.mesh, DIM, sim->u);
-  projection_face_velocity(light, 0, u, sim->u_f->v);
+  double *mean = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
+  projection_face_velocity(light, 0, u, mean);
+  still_blend(sim, mean, sim->u_f->v);
+  scratch_give(&sim->scratch, __func__);
   sim->carrying = make_solenoidal_by(sim, light, dt, sim->u_f->v);
 }
 

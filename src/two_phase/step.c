@@ -44,7 +44,7 @@
  *     u_f^{n+1} = u_f - dt alpha_f grad p
  *     g = A(gravity_f - alpha_f grad p)
  *     u^{n+1} = u* + dt g
- *     with "exact" u_f is then made anew from u^{n+1} (pressures.c)
+ *     with "exact" u_f of slow grains is then made anew from u^{n+1} (still.h)
  * then
  * viscous_work_add     what viscosity has taken from grains and gas
  * two_phase_adapt      if the surface has moved far enough

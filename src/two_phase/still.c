@@ -121,18 +121,26 @@ void still_keep(struct two_phase *sim, double dt, double *const g[DIM]) {
   scratch_give(&sim->scratch, "remembered");
 }
 
+void still_blend(const struct two_phase *sim, const double *slowly,
+                 double *u_f) {
+  const struct mesh *mesh = sim->grid.mesh;
+  const double few = least_grains(sim);
+  for (int32_t f = 0; f < mesh->nfaces; f++) {
+    u_f[f] += face_weight(sim, few, f) * (slowly[f] - u_f[f]);
+  }
+  mesh_fill_faces(mesh, 1, &u_f);
+}
+
 void still_face_velocity(struct two_phase *sim,
                          const struct projection *projection, const double *rho,
                          double dt, double *u_f) {
   const struct mesh *mesh = sim->grid.mesh;
-  const double few = least_grains(sim);
   double *mean = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   find_mean(sim, projection, rho, dt, mean);
   poisson_flux(mesh, projection->alpha_f, sim->p->v, projection->flux);
   for (int32_t f = 0; f < mesh->nfaces; f++) {
-    const double slowly = mean[f] + dt * projection->flux[f];
-    u_f[f] += face_weight(sim, few, f) * (slowly - u_f[f]);
+    mean[f] += dt * projection->flux[f];
   }
-  mesh_fill_faces(mesh, 1, &u_f);
+  still_blend(sim, mean, u_f);
   scratch_give(&sim->scratch, __func__);
 }

@@ -21,6 +21,10 @@
  * Grains that fall freely pass that speed in a tenth of a step. Of grains that
  * move it would leave odd and even pressures apart, which u does not feel.
  *
+ * After the projection their c is carried by the solenoidal part of
+ *   (1 - w) u_f^{n+1} + w m_c(u^{n+1}),
+ * made so with a gas that weighs nothing, which vanishes where grains rest.
+ *
  * Held grains, no wet side of which is at its yield stress, keep the velocity
  * that their springs leave them,
  *   u^{n+1} = u* + (1 - w) dt (g^{n+1} - g^n),
@@ -42,6 +46,9 @@ void still_find(struct two_phase *sim, double dt);
 void still_face_velocity(struct two_phase *sim,
                          const struct projection *projection, const double *rho,
                          double dt, double *u_f);
+/* Let faces of slow grains have w of `slowly`, 1 - w of u_f. Collective. */
+void still_blend(const struct two_phase *sim, const double *slowly,
+                 double *u_f);
 /* Take scratch for g [nleaves] of the viscous solve, and copy it there. */
 void still_remember(struct two_phase *sim, double *g[DIM]);
 /* Take from u^{n+1} of leaves that are held w times what the new g has added to

@@ -14,9 +14,8 @@
  * carries a cut leaf bears at least the weight of its grains, p_f >= c rho_1
  * |g_d| h/a.
  *
- * u_f, which carries c, is not that of the projection: it would leave dt (a_f -
- * mean g_c), which does not vanish at rest. It is the solenoidal part of the
- * mean of u^{n+1} on both sides.
+ * u_f, which carries c, is that of the projection only where grains move: at
+ * rest it would leave dt (a_f - mean g_c), which does not vanish. See still.h.
  */
 #ifndef TALUS_TWO_PHASE_YIELD_FACES_H
 #define TALUS_TWO_PHASE_YIELD_FACES_H
