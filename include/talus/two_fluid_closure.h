@@ -89,6 +89,7 @@ enum two_fluid_param {
   TWO_FLUID_RA_STIFFNESS,
   TWO_FLUID_RA_PHI_RLP,
   TWO_FLUID_RA_PHI_RCP,
+  TWO_FLUID_RA_RELAX,
   TWO_FLUID_MI_MU_1, /* MI: mu_i_phi_i */
   TWO_FLUID_MI_MU_2,
   TWO_FLUID_MI_I_0,
@@ -98,6 +99,7 @@ enum two_fluid_param {
   TWO_FLUID_MI_STIFFNESS,
   TWO_FLUID_MI_PHI_RLP,
   TWO_FLUID_MI_PHI_RCP,
+  TWO_FLUID_MI_RELAX,
   TWO_FLUID_KT_E, /* KT: ktgf */
   TWO_FLUID_KT_PHI_MAX,
   TWO_FLUID_KT_PHI_FR,
@@ -115,6 +117,7 @@ struct two_fluid_shearing {
                                     + inertial rho d^2 gamma^2 */
   double phi_m, pores;
   double stiffness, low, pole; /* of p_c; low: phi_rlp, unless phi_p is */
+  double relax;                /* of X, over phi gamma */
 };
 
 /* The closures of a case: choices and numbers. Copies are independent. */

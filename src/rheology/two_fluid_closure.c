@@ -60,14 +60,16 @@ static struct two_fluid_shearing shearing(const struct two_fluid_closure *c) {
           v[TWO_FLUID_CS_J_0],       1,
           v[TWO_FLUID_CS_INERTIAL],  v[TWO_FLUID_CS_PHI_M],
           v[TWO_FLUID_CS_PORES],     v[TWO_FLUID_CS_STIFFNESS],
-          v[TWO_FLUID_CS_PHI_P_LOW], v[TWO_FLUID_CS_PHI_MAX]};
+          v[TWO_FLUID_CS_PHI_P_LOW], v[TWO_FLUID_CS_PHI_MAX],
+          v[TWO_FLUID_CS_RELAX]};
     case TWO_FLUID_RAUTER:
       return (struct two_fluid_shearing){
           v[TWO_FLUID_RA_MU_1],     v[TWO_FLUID_RA_MU_2],
           v[TWO_FLUID_RA_J_0],      1,
           v[TWO_FLUID_RA_INERTIAL], v[TWO_FLUID_RA_PHI_M],
           v[TWO_FLUID_RA_PORES],    v[TWO_FLUID_RA_STIFFNESS],
-          v[TWO_FLUID_RA_PHI_RLP],  v[TWO_FLUID_RA_PHI_RCP]};
+          v[TWO_FLUID_RA_PHI_RLP],  v[TWO_FLUID_RA_PHI_RCP],
+          v[TWO_FLUID_RA_RELAX]};
     case TWO_FLUID_MU_I_PHI_I: {
       const double b = v[TWO_FLUID_MI_SLOPE] / v[TWO_FLUID_MI_PHI_M];
       return (struct two_fluid_shearing){v[TWO_FLUID_MI_MU_1],
@@ -79,7 +81,8 @@ static struct two_fluid_shearing shearing(const struct two_fluid_closure *c) {
                                          v[TWO_FLUID_MI_PORES],
                                          v[TWO_FLUID_MI_STIFFNESS],
                                          v[TWO_FLUID_MI_PHI_RLP],
-                                         v[TWO_FLUID_MI_PHI_RCP]};
+                                         v[TWO_FLUID_MI_PHI_RCP],
+                                         v[TWO_FLUID_MI_RELAX]};
     }
     case TWO_FLUID_KTGF:
       break;

@@ -73,11 +73,14 @@ double two_fluid_shear(const struct two_fluid_closure *c, double gamma,
 }
 
 double two_fluid_relaxed_shear(const struct two_fluid_closure *c, double before,
-                               double X_new, double phi, double gamma,
+                               double gamma, double eta_f, double phi,
                                double dt) {
-  if (c->set != TWO_FLUID_CRITICAL_STATE || X_new <= before) return X_new;
-  const double strain = c->param[TWO_FLUID_CS_RELAX] * phi * gamma * dt;
-  return before - (X_new - before) * expm1(-strain);
+  const double X = two_fluid_shear(c, gamma, eta_f);
+  const double viscous = c->by.viscous * eta_f * gamma;
+  const double from =
+      c->set == TWO_FLUID_CRITICAL_STATE ? before : fmax(before, viscous);
+  if (X <= from) return X;
+  return from - (X - from) * expm1(-c->by.relax * phi * gamma * dt);
 }
 
 struct two_fluid_stress two_fluid_shearing_stress(

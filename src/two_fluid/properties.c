@@ -316,8 +316,8 @@ static double sheared(const struct two_fluid *sim, int32_t f, double alpha,
   struct two_fluid_frozen with = {
       .phi_p = 0.5 * (sim->phi_p->v[a] + sim->phi_p->v[b]),
       .X = p_s > 0 ? (sim->X->v[a] + sim->X->v[b]) * p / p_s : 0};
-  const double X = two_fluid_relaxed_shear(
-      c, with.X, two_fluid_shear(c, gamma, eta_fluid), alpha, gamma, sim->dt);
+  const double X =
+      two_fluid_relaxed_shear(c, with.X, gamma, eta_fluid, alpha, sim->dt);
   if (X == with.X) return 0;
   const double before = two_fluid_pressure(c, alpha, &with, NULL);
   with.X = X;

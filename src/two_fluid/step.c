@@ -84,8 +84,8 @@ static void shear_grains(struct two_fluid *sim, double dt) {
       continue;
     }
     sim->phi_p->v[i] = two_fluid_next_packing(sim, i, alpha, dt);
-    sim->X->v[i] = two_fluid_relaxed_shear(
-        c, sim->X->v[i], two_fluid_shear(c, gamma, eta), alpha, gamma, dt);
+    sim->X->v[i] =
+        two_fluid_relaxed_shear(c, sim->X->v[i], gamma, eta, alpha, dt);
   }
   mesh_touch(mesh, sim->phi_p->v);
   mesh_touch(mesh, sim->X->v);

@@ -122,7 +122,7 @@ static double all(const struct two_fluid_closure *c, double phi, double gamma,
       two_fluid_capped(&tau, gamma, 1e-3, 1e7) +
       two_fluid_pressure(c, phi, &with, NULL) + two_fluid_settled(c, p, 0.54) +
       two_fluid_plastic(c, 0.54, rate, 1) + two_fluid_plastic_of(c, phi, p) +
-      two_fluid_relaxed_shear(c, 1, with.X, phi, gamma, 1);
+      two_fluid_relaxed_shear(c, 1, gamma, eta_f, phi, 1);
   if (p > 0) sum += two_fluid_solid_fraction(c, p, &with, 0, phi);
   return sum;
 }
