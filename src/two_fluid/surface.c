@@ -204,6 +204,15 @@ static double sunk(const struct two_fluid *sim, int32_t i, int below,
   return two_fluid_is_side(sim, f) ? 0 : -dt * up;
 }
 
+/* Return how fast the grains of leaf i sank through the fluid towards side
+ * `below` when the step began, m/s. */
+static double sank(const struct two_fluid *sim, int32_t i, int below) {
+  const int axis = below / 2;
+  const double slip =
+      sim->u[TWO_FLUID_S][axis]->saved[i] - sim->u[TWO_FLUID_F][axis]->saved[i];
+  return (1 - sim->bed->v[i]) * (below & 1 ? slip : -slip);
+}
+
 /* Return the packing of the bed in leaf i after dt: it gets denser as its top
  * sinks through the fluid, and looser as its bottom does, or at once where it
  * would press with more than its load. */
@@ -214,13 +223,17 @@ static double next_packing(const struct two_fluid *sim, int32_t i, int below,
   const double load = load_of(sim, i), a = 1 - bed;
   const double part = min2(sim->alpha->v[i] / bed, 1);
   const double buoyant = 2 * sim->rest->v[i] / h;
-  const double most = dt * a * a * buoyant / max2(sim->drag->v[i], 1e-300);
+  const double heavy = two_fluid_density(sim, TWO_FLUID_S) +
+                       two_fluid_density(sim, TWO_FLUID_F) * bed / a;
+  const double M = heavy + dt * sim->drag->v[i] / (a * a);
+  const double kept = dt * heavy * sank(sim, i, below) / M;
+  const double most = dt * dt * buoyant / M;
   const double bottom = sunk(sim, i, below, dt);
   double low = loosest_bed(sim, i), high = two_fluid_densest(&sim->closure);
   while (high - low > ENOUGH) {
     const double phi = 0.5 * (low + high);
     const double p = pressure_of(sim, i, phi);
-    const double top = most * (1 - p / load);
+    const double top = kept + most * (1 - p / load);
     if (p > load || phi - bed > bed / (part * h) * (top - bottom))
       high = phi;
     else

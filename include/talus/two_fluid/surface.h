@@ -24,12 +24,15 @@
  * phi. Grains that shear get denser than they were before they carry their
  * load again only as fast as fluid leaves them, and a thin front of them runs
  * on it meanwhile. With j the volume flux of both, div u_s = div(u_s - j): the
- * top of a bed sinks through the fluid by w (1 - m), w = (1 - phi)^2 (rho_s -
- * rho_f) g alpha/K, its bottom by what the face there has, -r, so that
+ * top of a bed sinks through the fluid by w, its bottom by what the face there
+ * has, -r, so that
  *
- *   d phi/dt = phi/(c h) [w (1 - P(phi)/L) + r],
+ *   d phi/dt = phi/(c h) (w + r)
+ *   M w = (rho_s + rho_f phi/a) w^n + dt (rho_s - rho_f) g (1 - P(phi)/L)
  *
- * implicit in phi. Fluid that drains at once (w large) gives m = 1. Grains that
+ * with M, a of (3) in pressures.h and w^n = a (u_s - u_f) downwards, implicit
+ * in phi. Without w^n the top of a suspension sinks before its bottom, and gets
+ * denser. Fluid that drains at once (K small) gives m = 1. Grains that
  * dilate expand at once, to P(phi) = L: suction that would hold them back is
  * not felt (m <= 1; as P(phi) of the last step, m > 1 bursts), and if they
  * stayed dense their pressure would jump as the leaf fills. Leaves that do not
@@ -48,11 +51,8 @@
  * surface was twice as steep or more. With W the sum over both leaves of a
  * column is (c_0 + c_1)^2/2 of it.
  *
- * The key grains.surface turns this on. It is not the default: with an exact
- * yield heaps and flat beds stand, and loose grains under liquid run as far as
- * they should, but fronts of dry collapses are late, by 14 % of their width on
- * 16 leaves to it, 5 % on 32, and suspensions sink 0.36 % too fast
- * (docs/notes/two_fluid.md).
+ * The key grains.surface turns this off. With it and an exact yield heaps and
+ * flat beds stand (docs/notes/two_fluid.md).
  *
  * Faces of such a leaf pass phi times the part of the volume swept that the
  * plane of c fills (vof.h): nothing where the bed does not reach.
