@@ -41,7 +41,7 @@ local level = param("level", 4, "finest grid: 4 cm/2^level")
 local stop = param("stop", 5, "time of the end, s")
 local closure = param("closure", "critical_state", "closures of the grains")
 local height = param("height", dense == 1 and 0.042 or 0.048, "H, m")
-local surface = param("surface", "planes", "of the bed: none, planes")
+local surface = param("surface", "planes", "of the bed: planes, none")
 local alpha = param("alpha", dense == 1 and 0.60 or 0.55, "solid fraction")
 
 return {
@@ -55,7 +55,7 @@ return {
     shape = function(x, y) return math.min(0.06 - x, height - y) end,
     density = 2500, d = 0.225e-3,
     start = "dense", alpha_start = alpha, surface = surface,
-    regularisation = param("regularisation", "exact", "of friction: clip, exact"),
+    regularisation = param("regularisation", "exact", "of friction: exact, clip"),
   },
   fluid = { density = 1010, eta_0 = 0.012 },
   closure = closure,

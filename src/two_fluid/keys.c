@@ -23,11 +23,11 @@ static const struct key KEYS[] = {
      .help = "solid fraction at t = 0: such that the pressure of the grains "
              "carries their weight; alpha_start everywhere; or that, with a "
              "plastic packing that makes it carry the weight"},
-    {"grains.surface", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "none", .unit = "",
+    {"grains.surface", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "planes", .unit = "",
      .offset = AT(surface), .choices = SURFACES,
-     .help = "surface of beds inside closures and fluxes: none, all is of the "
-             "solid fraction of leaves, by which heaps level out; a plane in "
-             "each leaf, where heaps stand"},
+     .help = "surface of beds inside closures and fluxes: a plane in each "
+             "leaf, by which heaps stand; or none, all is of the solid "
+             "fraction of leaves, by which they level out"},
     {"grains.alpha_start", KEY_NUMBER, .low = 1e-4, .high = 0.74, KEY_DEFAULT "0.6",
      .unit = "", .offset = AT(alpha_start),
      .help = "solid fraction of a patched or dense start, and for heights: "
@@ -38,14 +38,14 @@ static const struct key KEYS[] = {
     {"grains.alpha_surface", KEY_NUMBER, .low = 1e-4, .high = 0.6, KEY_DEFAULT "0.3",
      .unit = "", .offset = AT(alpha_surface),
      .help = "solid fraction whose contour is the surface"},
-    {"grains.regularisation", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "clip", .unit = "",
+    {"grains.regularisation", KEY_CHOICE, KEY_ANY, KEY_DEFAULT "exact", .unit = "",
      .offset = AT(regularisation), .choices = REGULARISATIONS,
-     .help = "how friction becomes a viscosity at small shear rates: clip caps "
-             "it; exact keeps the stress of grains at rest, which then hold "
-             "still"},
+     .help = "how friction becomes a viscosity at small shear rates: exact "
+             "keeps the stress of grains at rest, which then hold still; clip "
+             "caps it"},
     {"grains.eta_max", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "0", .unit = "Pa s",
      .offset = AT(eta_max),
-     .help = "cap on the viscosity of the grains, by which slopes creep; 0: "
+     .help = "cap of clip on the viscosity, by which slopes creep; 0: "
              "such that the first heap creeps at 1e-4 sqrt(g H); run.log tells"},
     {"grains.gamma_r", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "0", .unit = "1/s",
      .offset = AT(gamma_r),

@@ -5,11 +5,11 @@
  * rho_s. Both fronts are where the volume of the heap per area falls below half
  * a grain, both heights the largest of it.
  *
- * By default leaves of the surface have no strength and friction is capped:
- * heaps are compared while they flow. With planes of the surface and an exact
- * yield they come to rest, and run-outs are compared too; meanwhile the front
- * is up to 8 % behind (docs/notes/two_fluid.md). Friction of critical_state in
- * air is mu_1 + (mu_2 - mu_1)/(1 + J_0/(a_I I^2)), 0.6 at I = 0.08 already. */
+ * Heaps come to rest, and run-outs are compared too. With critical_state fronts
+ * are up to 7 % behind on the way (docs/notes/two_fluid.md). Without planes of
+ * the surface its leaves have no strength, and from 0.4 s on a film of them
+ * runs ahead. Friction of critical_state in air is mu_1 + (mu_2 - mu_1)/(1 +
+ * J_0/(a_I I^2)), 0.6 at I = 0.08 already. */
 #include "../mesh/two_fluid.h"
 #include "collapses.h"
 #include "report.h"
@@ -36,9 +36,9 @@ static const char kCase[] =
     "    shape = function(x, y) return math.min(x_0 - x, x_0 - y) end,\n"
     "    density = rho*(dry and phi or 1), d = not dry and d or nil,\n"
     "    alpha_start = not dry and phi or nil, rheology = dry and mu or nil,\n"
-    "    surface = not dry and param('surface', 'none', '') or nil,\n"
+    "    surface = not dry and param('surface', 'planes', '') or nil,\n"
     "    regularisation =\n"
-    "      not dry and param('regularisation', 'clip', '') or nil,\n"
+    "      not dry and param('regularisation', 'exact', '') or nil,\n"
     "  },\n"
     "  gas = dry and { density = 1.225, rheology = { 'newtonian',\n"
     "                                                eta = 1.79e-5 } } or "
@@ -54,7 +54,7 @@ static const char kCase[] =
     "}\n";
 
 static const double kTimes[] = {0.1, 0.2, 0.3, 0.4, 1};
-enum { LEVEL = 7, NTIMES = 5, FLOWING = 4 }; /* those before the last one */
+enum { LEVEL = 7, NTIMES = 5, FLOWING = 3 }; /* before the film */
 static const double kHalfGrain = 5e-4;       /* m */
 
 /* Fronts and heights at kTimes, m. */
@@ -134,20 +134,18 @@ static void compare_runout(struct report *report, const char *what,
   const double runout = grains->front[NTIMES - 1] / X_0 - 1;
   report_value(report, what, "run-out over x_0", LEVEL, runout);
   report_at_most(report, what, "run-out against two_phase", LEVEL,
-                 fabs(runout / (dry->front[NTIMES - 1] / X_0 - 1) - 1), 0.1);
+                 fabs(runout / (dry->front[NTIMES - 1] / X_0 - 1) - 1), 0.05);
 }
 
 static void run(struct report *report) {
-  const char *const planes = "surface=planes regularisation=exact";
-  const char *const critical =
-      "surface=planes regularisation=exact closure=critical_state";
-  const struct heaps dry = run_dry("dry=1"), grains = run_grains("dry=0");
-  compare(report, "by default", FLOWING, 0.05, &grains, &dry);
-  const struct heaps resting = run_grains(planes);
-  compare(report, "planes, exact", NTIMES, 0.1, &resting, &dry);
-  compare_runout(report, "planes, exact", &resting, &dry);
+  const struct heaps dry = run_dry("dry=1");
+  const struct heaps weak = run_grains("surface=none regularisation=clip");
+  compare(report, "no surface", FLOWING, 0.05, &weak, &dry);
+  const struct heaps resting = run_grains("dry=0");
+  compare(report, "mu_i_phi_i", NTIMES, 0.05, &resting, &dry);
+  compare_runout(report, "mu_i_phi_i", &resting, &dry);
   const struct heaps slow = run_dry("dry=1 closure=critical_state");
-  const struct heaps plastic = run_grains(critical);
+  const struct heaps plastic = run_grains("closure=critical_state");
   compare(report, "critical_state", NTIMES, 0.1, &plastic, &slow);
   compare_runout(report, "critical_state", &plastic, &slow);
 }

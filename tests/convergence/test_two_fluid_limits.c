@@ -124,7 +124,8 @@ static void report_grains(struct report *report) {
   struct four_state *beads = beads_new(&p);
 
   struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_OWN);
-  keys.start = TWO_FLUID_PATCHED, keys.alpha_start = NU, keys.eta_max = 1;
+  keys.start = TWO_FLUID_PATCHED, keys.alpha_start = NU;
+  grains_cap(&keys, 1);
   keys.closure.frictional_pressure = TWO_FLUID_SYAMLAL;
   double *v = keys.closure.param;
   v[TWO_FLUID_FLUID_DENSITY] = 2560e-6, v[TWO_FLUID_FLUID_ETA_0] = 1e-12;

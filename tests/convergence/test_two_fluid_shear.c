@@ -46,7 +46,7 @@ static struct params plates(struct two_fluid_keys *keys, int n, double of[2]) {
     p.boundary[side].type = BOUNDARY_NO_SLIP;
     p.boundary[side].velocity[0] = (side == 2 ? -0.5 : 0.5) * gamma * height;
   }
-  keys->eta_max = 1e6;
+  grains_cap(keys, 1e6);
   return p;
 }
 

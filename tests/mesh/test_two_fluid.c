@@ -108,7 +108,7 @@ END_TEST
 /* Both phases keep a uniform velocity, on one level and across levels. */
 START_TEST(uniform_motion_stays) {
   struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_WATER);
-  keys.eta_max = 10;
+  grains_cap(&keys, 10);
   keys.start = TWO_FLUID_PATCHED, keys.alpha_start = 0.3;
   struct params p = with_levels(grains_params(&keys, 0.16, LEVEL), _i);
   p.gravity[DIM - 1] = 0;

@@ -37,7 +37,7 @@ static double wave(const double x[3], double shift) {
 /* Make a periodic box of grains without weight, alpha and velocities in waves.
  */
 static struct two_fluid *waves(struct params *p) {
-  ((struct two_fluid_keys *)p->own)->eta_max = 10;
+  grains_cap(p->own, 10);
   p->gravity[DIM - 1] = 0;
   for (int side = 0; side < 2 * DIM; side++)
     p->boundary[side].type = BOUNDARY_PERIODIC;
@@ -212,7 +212,7 @@ START_TEST(friction_stops_both) {
   struct two_fluid_keys keys = grains_keys(TWO_FLUID_KTGF, TWO_FLUID_WATER);
   double *own = keys.closure.param;
   keys.start = TWO_FLUID_PATCHED, keys.alpha_start = _i ? 0.2 : 0.6;
-  keys.eta_max = _i ? 1 : 1e7;
+  grains_cap(&keys, _i ? 1 : 1e7);
   if (!_i) own[TWO_FLUID_GRAINS_D] = 1e-4;
   if (_i) own[TWO_FLUID_FLUID_ETA_0] = own[TWO_FLUID_FLUID_ETA_INF] = 1e4;
   struct params p = grains_params(&keys, SIZE, LEVEL);

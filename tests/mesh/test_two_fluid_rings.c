@@ -90,7 +90,7 @@ START_TEST(momentum_along_the_axis_stays) {
   struct two_fluid_keys keys =
       grains_keys(TWO_FLUID_KTGF, _i ? TWO_FLUID_AIR : TWO_FLUID_WATER);
   struct two_fluid_measures before, after;
-  keys.eta_max = 10;
+  grains_cap(&keys, 10);
   struct params p = rings(&keys, false);
   p.gravity[1] = 0;
   p.dt_max = 1e-3;

@@ -28,7 +28,7 @@ static struct params plates(struct two_fluid_keys *keys, bool levels) {
   number[TWO_FLUID_RA_INERTIAL] = 0, number[TWO_FLUID_RA_STIFFNESS] = 1e-9;
   number[TWO_FLUID_GRAINS_D] = 1.6e-4, number[TWO_FLUID_FLUID_DENSITY] = 1041;
   number[TWO_FLUID_FLUID_ETA_0] = ETA;
-  keys->start = TWO_FLUID_PATCHED, keys->eta_max = 1e6;
+  keys->start = TWO_FLUID_PATCHED, grains_cap(keys, 1e6);
   keys->alpha_start = number[TWO_FLUID_RA_PHI_M] / (1 + sqrt(J));
   struct params p = grains_params(keys, H, LEVEL);
   p.tolerance_pressure = p.tolerance_viscous = 1e-9;

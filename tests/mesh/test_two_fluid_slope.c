@@ -72,7 +72,7 @@ START_TEST(a_layer_slides_beyond_repose) {
   double z[] = {-1, H}, rough;
   struct two_fluid_keys keys;
   struct params p = slope(&keys, slides ? 25 : 20, 0.562);
-  if (exact) keys.regularisation = TWO_FLUID_EXACT;
+  keys.regularisation = exact ? TWO_FLUID_EXACT : TWO_FLUID_CLIP;
   p.shape = (struct function){bed, z};
   struct two_fluid *sim = grains_new(&p);
   bool done = true;
@@ -101,7 +101,7 @@ START_TEST(a_dense_layer_stays) {
   double z[] = {-1, H}, rough, most = 0;
   struct two_fluid_keys keys;
   struct params p = slope(&keys, 25, 0.592);
-  if (_i == 1) keys.regularisation = TWO_FLUID_EXACT;
+  keys.regularisation = _i ? TWO_FLUID_EXACT : TWO_FLUID_CLIP;
   p.shape = (struct function){bed, z};
   struct two_fluid *sim = grains_new(&p);
   const bool done = grains_run(sim, 0.5, 2000);

@@ -16,6 +16,13 @@
 #include "talus/two_fluid_drag.h"
 #include "talus/two_fluid_grains.h"
 
+/* Return the place of the default of a key among its choices. */
+static inline int choice_of(const struct key *key) {
+  int k = 0;
+  while (strcmp(key->choices[k], key->fallback) != 0) k++;
+  return k;
+}
+
 /* Give keys their defaults, with a set of closures in a fluid. */
 static inline struct two_fluid_keys grains_keys(enum two_fluid_set set,
                                                 enum two_fluid_fluid fluid) {
@@ -23,13 +30,19 @@ static inline struct two_fluid_keys grains_keys(enum two_fluid_set set,
   memset(&keys, 0, sizeof keys);
   const struct key *key;
   for (int k = 0; (key = model_key(&two_fluid_model_keys, k)) != NULL; k++) {
-    if (key->type != KEY_NUMBER) continue;
-    *(double *)(void *)((char *)&keys + key->offset) =
-        strtod(key->fallback, NULL);
+    void *at = (char *)&keys + key->offset;
+    if (key->type == KEY_NUMBER) *(double *)at = strtod(key->fallback, NULL);
+    if (key->type == KEY_CHOICE) *(int *)at = choice_of(key);
   }
   keys.closure.set = set;
   keys.fluid = fluid;
   return keys;
+}
+
+/* Let the viscosity of the grains be at most eta_max, Pa s. */
+static inline void grains_cap(struct two_fluid_keys *keys, double eta_max) {
+  keys->regularisation = TWO_FLUID_CLIP;
+  keys->eta_max = eta_max;
 }
 
 /* Describe a closed box of edge `size`, slip sides, no-slip floor, on one

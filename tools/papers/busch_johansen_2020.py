@@ -185,7 +185,7 @@ def chosen(study, cases):
 
 
 def words_of(study, case):
-    words = {"stop": case.end(), "reach": REACH[case.a], "surface": "planes",
+    words = {"stop": case.end(), "reach": REACH[case.a],
              "cells": study.cells or CELLS} | case.words()
     if "closure=ktgf" in study.words and "alpha" in words:
         words["start"] = "patched"
@@ -422,7 +422,7 @@ def bed(study, a, x_0, d):
     """A bed behind its gate in air, after the 4 s of the paper's first run:
     (last snapshot, largest speed that it shows)."""
     words = {"a": a, "x_0": x_0, "d": d, "fluid": "air", "gate": 1,
-             "closure": "ktgf", "stop": 4, "surface": "planes",
+             "closure": "ktgf", "stop": 4,
              "cells": study.cells or CELLS}
     name = name_of(study, ["bed", f"a{a:g}", f"x{x_0:g}", f"d{d:g}"])
     directory = study.run("cliff", name, words)
@@ -514,13 +514,13 @@ def levelling(study):
     """The paper's closures as printed, with the cap of Fluent and the solid
     fraction of leaves in them, beside ours."""
     case = Case(1, 0.1, 1e-3, "water", "settled")
-    printed = {"closure": "ktgf", "surface": "none", "eta_max": 1e5}
+    printed = {"closure": "ktgf", "surface": "none",
+               "regularisation": "clip", "eta_max": 1e5}
     end = {"stop": 4, "reach": 8, "cells": study.cells or CELLS}
-    ours = {"surface": "planes"}
     fig, axes = make_panels(2, 1, width=7.5, height=2)
     rows = []
     for ax, (name, words) in zip(axes, (("as printed", printed),
-                                        ("ours", ours))):
+                                        ("ours", {}))):
         directory = study.run(
             "cliff", name_of(study, ["levelling", name.replace(" ", "-")]),
             case.words() | end | words)
