@@ -40,13 +40,14 @@ double four_state_time_step(const struct four_state *sim, double dt_max) {
 double four_state_part_given(const struct four_state *sim, double dt, int32_t i,
                              double nu_old) {
   const struct mesh *mesh = sim->grid.mesh;
+  const double store = mesh_width(mesh, i) * nu_old; /* dust: none */
   double out = 0;
-  if (!(nu_old > 0)) return 1;
+  if (!(store > 0)) return 1;
   for (int s = 0; s < NFACE; s++) {
     const double v = mesh_side(mesh, sim->flux->v, i, s);
     out += max2(s & 1 ? v : -v, 0);
   }
-  return dt * out / (mesh_width(mesh, i) * nu_old);
+  return dt * out / store;
 }
 
 double four_state_given(const struct four_state *sim, double dt,
