@@ -83,12 +83,19 @@ struct four_state_numbers four_state_numbers(
 double four_state_contact_viscosity(const struct four_state_closure *closure,
                                     double p_E, double gamma);
 
-/* Return T after dt by production and collisions. DD: D:D, div: div u. damping:
- * unless NULL, gets k = -d(dT/dt)/dT at the start, 1/s, at which they take back
- * a small change of T; below 0 where it grows. */
+/* How grains are deformed. */
+struct four_state_rates {
+  double DD;   /* D:D, 1/s^2 */
+  double div;  /* div u, 1/s */
+  double most; /* of tau_K:D in the mean over a step, W/m^3 */
+};
+/* Return T after dt by production and collisions. damping: unless NULL, gets k
+ * = -d(dT/dt)/dT at the start, 1/s, at which they take back a small change of
+ * T; below 0 where it grows. */
 double four_state_temperature(const struct four_state_closure *closure,
-                              double nu, double T, double DD, double div,
-                              double dt, double *damping);
+                              double nu, double T,
+                              const struct four_state_rates *rates, double dt,
+                              double *damping);
 
 /* Return the state, as enum rheology_state (rheology.h), from the share of p_E
  * in p and the shear rate. */

@@ -10,6 +10,8 @@
 
 /* Part of the store of a leaf that may leave through one face by delta. */
 static const double MOST_GIVEN = 0.25 / DIM;
+/* Production may take this times what friction has taken. */
+static const double MOST_POWER = 2;
 /* Tolerance of conduction, relative to the largest nu T; leaves below
  * LEAST_STORE of nu count as that. */
 static const double TOLERANCE = 1e-7, LEAST_STORE = 1e-6;
@@ -129,16 +131,28 @@ static double leaf_strain(const struct four_state *sim, int32_t i) {
   return 0.5 * sum / DIM;
 }
 
+/* Return the most that production may take, W/m^3. */
+static double most_power(const struct four_state *sim, double dt, int32_t i,
+                         double DD, double div) {
+  const double mu = sim->mu_K->v[i], lambda = sim->lambda_K->v[i];
+  const double h = sim->grid.mesh->h[i];
+  const double rho = sim->closure.param[LEE_HUANG_RHO_D] * sim->nu->v[i];
+  const double taken = 2 * mu * DD + (lambda - 2. / 3 * mu) * div * div;
+  return max2(MOST_POWER * taken, rho * DD * h * h / dt);
+}
+
 /* Produce and dissipate, and set mass to nu times what holds back a change. */
 static void react(struct four_state *sim, double dt, double *mass) {
   const struct mesh *mesh = sim->grid.mesh;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     const double nu = sim->nu->v[i], T = max2(sim->T->v[i], 0);
+    const double DD = leaf_strain(sim, i), div = leaf_divergence(sim, i);
+    const struct four_state_rates rates = {DD, div,
+                                           most_power(sim, dt, i, DD, div)};
     double k = 0;
     sim->T->v[i] =
         four_state_has_grains(sim, i)
-            ? four_state_temperature(&sim->closure, nu, T, leaf_strain(sim, i),
-                                     leaf_divergence(sim, i), dt, &k)
+            ? four_state_temperature(&sim->closure, nu, T, &rates, dt, &k)
             : 0;
     mass[i] = max2(nu, LEAST_STORE) * held_back(k, dt);
   }

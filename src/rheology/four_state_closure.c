@@ -285,18 +285,29 @@ double four_state_contact_viscosity(const struct four_state_closure *c,
   return p_E * c->param[LEE_HUANG_ETA_S] * factor; /* eq. 18 */
 }
 
+/* Return s after a time, 3 rho_d nu of it as unit, by ds/dt = A - B s^2. */
+static double fluctuate(double A, double B, double s, double time) {
+  const double end = sqrt(A / B), reach = tanh(sqrt(A * B) * time);
+  const double fall = end > 0 ? reach / end : B * time;
+  return (s + end * reach) / (1 + s * fall);
+}
+
 double four_state_temperature(const struct four_state_closure *c, double nu,
-                              double T, double DD, double div, double dt,
-                              double *damping) {
+                              double T, const struct four_state_rates *rates,
+                              double dt, double *damping) {
   const double rho = c->param[LEE_HUANG_RHO_D], d = c->param[LEE_HUANG_D];
   const struct four_state_numbers k = four_state_numbers(c, nu);
-  const double A = fmax(
-      rho * d * (2 * k.mu * DD + (k.lambda - 2. / 3 * k.mu) * div * div), 0);
+  const double div2 = rates->div * rates->div;
+  double A = fmax(
+      rho * d * (2 * k.mu * rates->DD + (k.lambda - 2. / 3 * k.mu) * div2), 0);
   const double B = 9 * (1 - c->param[LEE_HUANG_E_EFF]) * k.lambda * rho / d;
-  const double pace = dt / (3 * rho * nu), s = sqrt(T);
-  const double end = sqrt(A / B), reach = tanh(sqrt(A * B) * pace);
-  const double fall = end > 0 ? reach / end : B * pace;
-  const double s_new = (s + end * reach) / (1 + s * fall);
+  const double time = dt / (3 * rho * nu), s = sqrt(T);
+  double s_new = fluctuate(A, B, s, time);
+  const double power = 0.5 * A * (s + s_new);
+  if (power > rates->most) {
+    A *= rates->most / power;
+    s_new = fluctuate(A, B, s, time);
+  }
   if (damping != NULL)
     *damping = s > 0 ? (3 * B * s - A / s) / (3 * rho * nu) : 0;
   return s_new * s_new;

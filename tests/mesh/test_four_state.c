@@ -338,6 +338,37 @@ START_TEST(plane_shear_heats_as_a_tanh) {
 }
 END_TEST
 
+/* Return u_x of grains that slide on the floor. */
+static double slide(void *context, const double x[3]) {
+  (void)context, (void)x;
+  return 0.5;
+}
+
+/* Grains so thin that the floor heats them without bounds, eq. 3 and 8, get no
+ * more heat in a step than the lowest row had of motion; 90 times that
+ * (3D: 1.1) with a production that knows no bounds. */
+START_TEST(thin_grains_heat_by_their_motion) {
+  struct four_state_keys keys = four_state_defaults();
+  keys.start = FOUR_STATE_UNIFORM, keys.nu_start = 2e-4;
+  keys.knudsen = INFINITY, keys.T_max = 100;
+  struct params p = box(&keys);
+  p.gravity[DIM - 1] = 0;
+  p.dt_max = 1e-3;
+  for (int side = 0; side < 2 * (DIM - 1); side++)
+    p.boundary[side].type = BOUNDARY_PERIODIC;
+  p.velocity[0] = (struct function){slide, NULL};
+  struct four_state *sim = beads_new(&p);
+  sim->model.dt = p.dt_max; /* not a short first step */
+  const bool done = beads_run(sim, 1, 1);
+  const double row = sim->grid.mesh->h[0] / p.size * sim->initial;
+  const double heat = four_state_fluctuating(sim);
+  four_state_destroy(sim);
+  ck_assert(done);
+  ck_assert_double_gt(heat, 1e-3 * row);
+  ck_assert_double_le(heat, row);
+}
+END_TEST
+
 /* Leaves with next to no grains, here the smallest number there is, give away
  * all of them: none of 0, and no NaN. */
 START_TEST(dust_is_carried) {
@@ -383,10 +414,11 @@ START_TEST(grains_that_spread_in_rings_heat) {
   field_arrays(sim->u, u);
   field_fill_many(mesh, DIM, sim->u);
   four_state_properties(sim);
-  four_state_shear(sim, u);
+  four_state_viscosity(sim, u);
   four_state_heat(sim, dt);
+  const struct four_state_rates rates = {2 * 9, 2 * 3, INFINITY};
   const double exact =
-      four_state_temperature(&sim->closure, 0.55, T, 2 * 9, 2 * 3, dt, NULL);
+      four_state_temperature(&sim->closure, 0.55, T, &rates, dt, NULL);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     if (mesh->x[i][0] > 0.06)
       continue; /* the side conducts heat from its own */
@@ -468,6 +500,7 @@ Suite *four_state_suite(void) {
   tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, 1);
   tcase_add_test(flow, measures_read_no_stale_nodes);
   tcase_add_loop_test(flow, plane_shear_heats_as_a_tanh, 0, 2);
+  tcase_add_test(flow, thin_grains_heat_by_their_motion);
   tcase_add_test(flow, dust_is_carried);
   if (DIM == 2) { /* in 3D two runs on two ranks differ by 4e-9 at times */
     tcase_add_loop_test(alone, a_layer_in_balance_rests, 7, 12);

@@ -48,8 +48,8 @@ enum { NSHEAR = sizeof SHEAR / sizeof *SHEAR };
 START_TEST(plane_shear_is_the_closed_form) {
   const struct four_state_closure c = closures(NULL, 0, INFINITY);
   const double *row = SHEAR[_i], nu = row[0], gamma = 1;
-  const double T =
-      four_state_temperature(&c, nu, 1, 0.5 * gamma * gamma, 0, 1e6, NULL);
+  const struct four_state_rates rates = {0.5 * gamma * gamma, 0, INFINITY};
+  const double T = four_state_temperature(&c, nu, 1, &rates, 1e6, NULL);
   const double p = four_state_pressure(&c, nu, T, NULL);
   const double p_E = p - four_state_kinetic_pressure(&c, nu, T);
   const double d = c.param[LEE_HUANG_D], rho = c.param[LEE_HUANG_RHO_D];
@@ -70,10 +70,11 @@ START_TEST(fluctuations_grow_as_a_tanh_at_any_step) {
   const struct four_state_closure c = closures(NULL, 0, INFINITY);
   const double nu = SHEAR[_i][0], end = 1 / SHEAR[_i][6];
   const double exact = SHEAR[_i][3] * pow(tanh(1), 2);
+  const struct four_state_rates rates = {0.5, 0, INFINITY};
   for (int steps = 1; steps <= 1000; steps *= 10) {
     double T = 0;
     for (int k = 0; k < steps; k++)
-      T = four_state_temperature(&c, nu, T, 0.5, 0, end / steps, NULL);
+      T = four_state_temperature(&c, nu, T, &rates, end / steps, NULL);
     EQUAL(T, exact, 1e-6);
   }
 }
@@ -83,7 +84,8 @@ END_TEST
 START_TEST(fluctuations_decay) {
   const struct four_state_closure c = closures(NULL, 0, 10);
   const double nu = 0.4, T = 0.3, dt = 1e-3;
-  const double after = four_state_temperature(&c, nu, T, 0, 0, dt, NULL);
+  const struct four_state_rates none = {0, 0, INFINITY};
+  const double after = four_state_temperature(&c, nu, T, &none, dt, NULL);
   const double B = 9 * 0.42 * four_state_numbers(&c, nu).lambda / 1.15e-3;
   EQUAL(sqrt(after), sqrt(T) / (1 + B * sqrt(T) * dt / (3 * nu)), 1e-12);
 }
@@ -95,12 +97,13 @@ START_TEST(damping_takes_back_a_change_of_temperature) {
   const struct four_state_closure c = closures(NULL, 0, 10);
   const double nu = 0.4, T = 0.3, dt = 1e-9, h = 1e-3;
   for (double DD = 0; DD < 1000; DD += 300) {
+    const struct four_state_rates rates = {DD, 0, INFINITY};
     double damping, unused;
     const double lower =
-        four_state_temperature(&c, nu, T - h, DD, 0, dt, &unused) - (T - h);
+        four_state_temperature(&c, nu, T - h, &rates, dt, &unused) - (T - h);
     const double upper =
-        four_state_temperature(&c, nu, T + h, DD, 0, dt, &unused) - (T + h);
-    four_state_temperature(&c, nu, T, DD, 0, dt, &damping);
+        four_state_temperature(&c, nu, T + h, &rates, dt, &unused) - (T + h);
+    four_state_temperature(&c, nu, T, &rates, dt, &damping);
     EQUAL(damping, -(upper - lower) / (2 * h * dt), 1e-4);
   }
 }

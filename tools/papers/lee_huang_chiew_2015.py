@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures and table II of C.-H. Lee, Z. Huang & Y.-M. Chiew, Phys. Fluids 27
 (2015) 113303. Case: examples/four_state_column.lua. Runs of table II start
-from uniform solid fraction, as the paper's do; its printed run-outs are those
-of its vacuum, in which a hot cloud drags on the front. Dotted lines of figure 7
+from uniform solid fraction, as the paper's do; its printed run-outs are shorter
+than those of its equations (docs/notes/four_state.md). Dotted lines of figure 7
 are eqs. 30 and 31 with a factor of 1, as they print none."""
 import math
 
@@ -188,9 +188,9 @@ def draw_cloud(ax, run):
 
 
 def vacuum(study):
-    """Where grains are few mu_K stays finite and dissipation falls as nu^2: a hot
-    cloud that sticks to the bed holds the front back, by as much as T may grow.
-    """
+    """Where grains are few mu_K stays finite and dissipation falls as nu^2, so that
+    T grows; long steps make a hot cloud of it, which holds the front back, unless
+    production is bounded by what is taken from the flow."""
     runs = {"divided by 1 + (mean free path)/(10 d), T up to 1 m$^2$/s$^2$":
             column(study, stop=6),
             "as printed, T up to 100 m$^2$/s$^2$":

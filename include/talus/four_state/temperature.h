@@ -4,8 +4,11 @@
  *   3/2 rho_d nu dT/dt = div(kappa grad T - delta grad nu) + tau_K:D - eps
  *
  * Production and collisions are integrated exactly over dt, to T_r
- * (four_state_closure.h), and heat comes to a store that they damp at the rate
- * k = -d(dT/dt)/dT of the start,
+ * (four_state_closure.h), production by no more than twice what mu_K and
+ * lambda_K of T^n take from the flow, or else rho_d nu D:D h^2/dt, what the
+ * shear of a leaf has: T of thin grains may grow a hundredfold in a step, and
+ * mu_K with it, which in truth stops them on the way. Heat comes to a store
+ * that they damp at the rate k = -d(dT/dt)/dT of the start,
  *
  *   phi nu (T - T_r) = dt/(3/2 rho_d) div(kappa grad T - delta grad nu),
  *   phi = k dt/(1 - exp(-k dt)), 1 for k < 0,
