@@ -46,9 +46,8 @@ void outline_free(struct outline *outline);
 
 /* Return the largest height, m. */
 double outline_height(const struct outline *outline);
-/* Return the front, m; without any grains the lower side in 2D, 0 in 3D. */
-double outline_front(const struct outline *outline);
-/* Return the front where the heap ends at the height `end` > 0 instead. */
-double outline_front_at(const struct outline *outline, double end);
+/* Return the front, m; without any grains the lower side in 2D, 0 in 3D. Where
+ * end > 0 the heap ends at that height, m, or half the largest, instead. */
+double outline_front(const struct outline *outline, double end);
 
 #endif

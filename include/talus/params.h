@@ -185,6 +185,7 @@ struct params {
   double rest_speed;   /* the run ends before that if its grains have been */
   double rest_time;    /* slower for this time; 0: it does not */
   double length_scale; /* for reading only: L0, or 1 */
+  double front_height; /* of the heap at its front (outline.h); 0: default */
   double profile_times[PARAMS_MAX_TIMES];
   int nprofile_times;
   double snapshot_every;   /* interval of time; 0: only first and last */

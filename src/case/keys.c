@@ -127,6 +127,10 @@ static const struct key KEYS[] = {
      .help = "a length of the problem, for reading and pictures only"},
     {"output.profile_times", KEY_TIMES, .low = 0, .high = INFINITY, KEY_OPTIONAL,
      .unit = "s", .help = "times of outlines in profile.csv, at most 256"},
+    {"output.front_height", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "0",
+     .unit = "m", .offset = AT(front_height),
+     .help = "of the heap where its front is; 0: half the finest cell, or half "
+             "a grain in models that know it; the same for grids to compare"},
     {"output.snapshot_every", KEY_NUMBER, KEY_NOT_NEGATIVE, KEY_DEFAULT "0",
      .unit = "s", .offset = AT(snapshot_every),
      .help = "time between snapshots; 0: the first and the last only"},

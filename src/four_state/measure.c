@@ -135,8 +135,9 @@ static void find_outline(const struct four_state *sim,
   outline_measure(mesh, c, heap, outline_axis(sim->params->gravity),
                   &m->outline);
   m->grain_height = outline_height(&m->outline);
-  m->grain_front =
-      outline_front_at(&m->outline, 0.5 * sim->closure.param[LEE_HUANG_D]);
+  const double end = sim->params->front_height;
+  const double half_grain = 0.5 * sim->closure.param[LEE_HUANG_D];
+  m->grain_front = outline_front(&m->outline, end > 0 ? end : half_grain);
   mem_free(heap), mem_free(c);
 }
 

@@ -97,8 +97,8 @@ double outline_height(const struct outline *outline) {
 }
 
 /* Return the height at which a heap of this largest height ends. */
-static double end_height(const struct outline *o, double height) {
-  return 0.5 * min2(o->spacing, height);
+static double end_height(const struct outline *o, double end, double height) {
+  return min2(end > 0 ? end : 0.5 * o->spacing, 0.5 * height);
 }
 
 /* Find where the heap ends, in columns from the centre of column 0, walking
@@ -118,8 +118,9 @@ static int tallest(int n, const double *h) {
   return best;
 }
 
-static double front_2d(const struct outline *o, double threshold) {
+static double front_2d(const struct outline *o, double end) {
   const int n = o->n[0];
+  const double threshold = end_height(o, end, outline_height(o));
   const double *h = o->height;
   int start = tallest(n, h);
   if (h[start] <= 0) return o->first[0] - 0.5 * o->spacing;
@@ -174,7 +175,7 @@ static void find_axis(const struct outline *o, double threshold, double axis[2],
 
 static double front_3d(const struct outline *o, double end) {
   double axis[2], weight[2];
-  find_axis(o, end > 0 ? end : end_height(o, outline_height(o)), axis, weight);
+  find_axis(o, end_height(o, end, outline_height(o)), axis, weight);
   int n = (int)hypot(weight[0] * o->n[0], weight[1] * o->n[1]) + 2;
   double *mean = MEM_NEW(double, (size_t)n),
          *count = MEM_NEW(double, (size_t)n);
@@ -191,7 +192,7 @@ static double front_3d(const struct outline *o, double end) {
   while (n > 1 && count[n - 1] == 0) n--; /* outside the box */
   double front = 0;
   int start = tallest(n, mean);
-  const double threshold = end > 0 ? end : end_height(o, mean[start]);
+  const double threshold = end_height(o, end, mean[start]);
   if (mean[start] > 0)
     front = o->spacing * (walk(n, mean, threshold, start, 1) + 0.5);
   mem_free(mean);
@@ -199,12 +200,6 @@ static double front_3d(const struct outline *o, double end) {
   return front;
 }
 
-double outline_front(const struct outline *outline) {
-  return DIM == 2
-             ? front_2d(outline, end_height(outline, outline_height(outline)))
-             : front_3d(outline, 0);
-}
-
-double outline_front_at(const struct outline *outline, double end) {
+double outline_front(const struct outline *outline, double end) {
   return DIM == 2 ? front_2d(outline, end) : front_3d(outline, end);
 }

@@ -181,7 +181,8 @@ void diagnostics_measure(const struct two_phase *sim,
   outline_measure(mesh, c, heap, outline_axis(sim->params->gravity),
                   &diagnostics->outline);
   diagnostics->height = outline_height(&diagnostics->outline);
-  diagnostics->front = outline_front(&diagnostics->outline);
+  diagnostics->front =
+      outline_front(&diagnostics->outline, sim->params->front_height);
 }
 
 void diagnostics_measure_layers(struct two_phase *sim,

@@ -76,7 +76,7 @@ static struct case_file *load(const char *format) {
 
 static void keep(struct heaps *heaps, int k, bool good,
                  const struct outline *outline) {
-  heaps->front[k] = good ? outline_front_at(outline, kHalfGrain) : NAN;
+  heaps->front[k] = good ? outline_front(outline, kHalfGrain) : NAN;
   heaps->height[k] = good ? outline_height(outline) : NAN;
 }
 

@@ -109,7 +109,7 @@ START_TEST(an_empty_box_has_neither_heap_nor_droplets) {
   outline_measure(w.mesh, w.c, w.heap, DIM - 1, &outline);
   ck_assert_int_eq(droplets.n, 0);
   ck_assert_double_eq(droplets.volume, 0);
-  ck_assert_double_eq(outline_front(&outline), 0);
+  ck_assert_double_eq(outline_front(&outline, 0), 0);
   ck_assert_double_eq(outline_height(&outline), 0);
   outline_free(&outline);
   world_destroy(&w);
@@ -147,7 +147,7 @@ static double front_of(const double x0[2], double peak, double slope,
   struct outline outline;
   fill_heap(&w, x0, peak, slope);
   outline_measure(w.mesh, w.c, w.heap, DIM - 1, &outline);
-  double front = outline_front(&outline);
+  double front = outline_front(&outline, 0);
   outline_free(&outline);
   world_destroy(&w);
   return front;
@@ -165,14 +165,18 @@ START_TEST(the_front_of_a_wedge_on_the_wall_is_interpolated) {
 END_TEST
 
 /* Columns of width 1 and heights 3, 2, 1, 0: half way from the third to the
- * fourth it is 1/2, at x = 3. In 3D all along y, as a slice of a plane heap. */
+ * fourth it is 1/2, at x = 3, and 1.25 at x = 2.25. In 3D
+ * all along y, as a slice of a plane heap. */
 START_TEST(the_front_of_columns_done_by_hand) {
   enum { NX = 6, NY = DIM == 2 ? 1 : 4 };
   double height[NY * NX];
   struct outline outline = {
       .n = {NX, NY}, .first = {0.5, 0.5}, .spacing = 1, .height = height};
   for (int k = 0; k < NY * NX; k++) height[k] = fmax(3 - k % NX, 0);
-  ck_assert_double_eq_tol(outline_front(&outline), 3, 1e-14);
+  ck_assert_double_eq_tol(outline_front(&outline, 0), 3, 1e-14);
+  ck_assert_double_eq_tol(outline_front(&outline, 1.25), 2.25, 1e-14);
+  /* a heap lower than that ends at half its height */
+  ck_assert_double_eq_tol(outline_front(&outline, 100), 2, 1e-14);
 }
 END_TEST
 
@@ -212,7 +216,8 @@ START_TEST(a_layer_thinner_than_a_cell_has_a_front) {
       w.heap[i] = w.c[i] > 0;
     }
     outline_measure(w.mesh, w.c, w.heap, DIM - 1, &outline);
-    double front = outline_front(&outline), height = outline_height(&outline);
+    double front = outline_front(&outline, 0),
+           height = outline_height(&outline);
     outline_free(&outline);
     world_destroy(&w);
     ck_assert_double_eq(height, thin[k] * delta);

@@ -12,7 +12,7 @@ struct four_state_measures {
    * its largest distance from the lower edge of the box), and its height, m */
   double front, height;
   /* Likewise of the solid volume per area over nu_start, which ends where it
-   * falls below half a grain */
+   * falls below half a grain, or front_height */
   double grain_front, grain_height;
   double volume;             /* of grains, m^2 (3D: m^3) */
   double momentum[3];        /* kg/s (3D: kg m/s) */

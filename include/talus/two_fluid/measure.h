@@ -15,7 +15,7 @@ struct two_fluid_measures {
    * height, m */
   double front, height;
   /* Likewise of the solid volume per area over alpha_start, which ends where it
-   * falls below half a grain */
+   * falls below half a grain, or front_height */
   double grain_front, grain_height;
   double volume;        /* of grains, m^2 (3D: m^3) */
   double fluid_volume;  /* of the fluid */
