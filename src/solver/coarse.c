@@ -11,9 +11,9 @@
 /* Set q = A p for component c. */
 static void apply(const struct hierarchy *h, int c, const double *p,
                   double *q) {
-  const double *inverse = h->inverse[c];
   for (int32_t i = 0; i < h->level[0].nowned; i++) {
-    double sum = inverse[i] > 0 ? p[i] / inverse[i] : 0;
+    const double inverse = h->inverse[c][i * h->stride];
+    double sum = inverse > 0 ? p[i] / inverse : 0;
     for (int f = 0; f < NFACE; f++) {
       if (h->wall[i] >> f & 1) continue; /* p has no images */
       const bool normal = h->nparts > 1 && c == f >> 1;
@@ -27,6 +27,7 @@ static void apply(const struct hierarchy *h, int c, const double *p,
 
 static void solve(struct hierarchy *h, int c) {
   const int32_t n = h->level[0].nowned;
+  const int64_t stride = h->stride;
   const struct forest_layout *layout = forest_layout(h->mesh->forest);
   int most = 8;
   for (int d = 0; d < DIM; d++) most += 2 * layout->trees[d];
@@ -34,12 +35,12 @@ static void solve(struct hierarchy *h, int c) {
   double *z = h->coarse[0], *p = h->coarse[1], *q = h->coarse[2];
   double rz_old = 0, rz_first = 0;
   memset(p, 0, (size_t)n * sizeof *p);
-  memset(e, 0, (size_t)n * sizeof *e);
+  for (int32_t k = 0; k < n; k++) e[k * stride] = 0;
   for (int iteration = 0; iteration < most; iteration++) {
     double rz = 0, pq = 0;
     for (int32_t k = 0; k < n; k++) {
-      z[k] = h->inverse[c][k] * r[k];
-      rz += r[k] * z[k];
+      z[k] = h->inverse[c][k * stride] * r[k * stride];
+      rz += r[k * stride] * z[k];
     }
     if (iteration == 0) rz_first = rz;
     if (!(rz > 1e-6 * rz_first)) break;
@@ -51,8 +52,8 @@ static void solve(struct hierarchy *h, int c) {
     if (!(pq > (h->has_mass ? 1e-14 : 1e-11) * rz)) break;
     const double a = rz / pq;
     for (int32_t k = 0; k < n; k++) {
-      e[k] += a * p[k];
-      r[k] -= a * q[k];
+      e[k * stride] += a * p[k];
+      r[k * stride] -= a * q[k];
     }
     rz_old = rz;
   }

@@ -150,13 +150,13 @@ static void merge_jumping_masses(struct hierarchy *h, int l, double *mass) {
   }
 }
 
-/* Set the hoop stress of leaves that move outward at r, over r: 2 alpha V / r,
- * whose sum is that of a merged node. Returns NULL in a plane. */
+/* Set the hoop stress [nslots] of leaves that move outward at r, over r: 2
+ * alpha V / r, whose sum is that of a merged node. Returns it, NULL in a plane.
+ */
 static double *set_hoops(struct hierarchy *h, const double *alpha_f,
-                         double factor) {
+                         double factor, double *hoop) {
   const struct mesh *mesh = h->mesh;
   if (!mesh_is_axisymmetric(mesh) || h->nparts == 1) return NULL;
-  double *hoop = h->e[1]; /* free for now */
   memset(hoop, 0, (size_t)h->nslots * sizeof *hoop);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     hoop[h->leaf_slot[i]] = 2 * factor * mesh_mean(mesh, alpha_f, i) *
@@ -216,6 +216,7 @@ static void add_bulk(const struct hierarchy *h, int c, double *diagonal) {
  * sides. */
 static void set_inverse(struct hierarchy *h, double *restrict mass,
                         double *const wall[]) {
+  const int64_t stride = h->stride;
   for (int32_t i = 0; i < h->nowned; i++) {
     double sum = mass[i];
 #pragma GCC unroll 6
@@ -231,11 +232,11 @@ static void set_inverse(struct hierarchy *h, double *restrict mass,
       const double diagonal =
           mass[i] + wall[c][i] + twice * ((double)lower[i] + (double)upper[i]);
       const double a = 1 / max2(diagonal, DBL_MIN);
-      inverse[i] = diagonal > 0 ? a : 0;
+      inverse[i * stride] = diagonal > 0 ? a : 0;
     }
   }
   for (int l = 0; l < h->nlevels; l++) {
-    plan_run(&h->level[l].copy, h->nparts, h->inverse, 1, false);
+    run_plan(h, &h->level[l].copy, h->inverse, false);
   }
 }
 
@@ -255,20 +256,35 @@ static void set_beyond(struct hierarchy *h, const struct bc *const bc[]) {
 static void set_weights(struct hierarchy *h) {
   const struct mesh *mesh = h->mesh;
   for (int c = 0; c < h->nparts; c++) {
+    const double *inverse = h->inverse[c];
     float *weight = h->weight + (int64_t)c * mesh->nleaves;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      weight[i] =
-          (float)(h->inverse[c][h->leaf_slot[i]] * mesh_volume(mesh, i));
+      weight[i] = (float)(inverse[(int64_t)h->leaf_slot[i] * h->stride] *
+                          mesh_volume(mesh, i));
     }
+  }
+}
+
+/* Arrange e, r and the inverse for so many components. */
+static void lay_out(struct hierarchy *h, int nparts) {
+  const int64_t n = h->nslots;
+  h->nparts = nparts;
+  h->stride = nparts > 1 ? LANES : 1;
+  set_parts(h, h->e[0], n + h->njumps + h->nmirrors, h->e);
+  set_parts(h, h->r[0], n, h->r);
+  set_parts(h, h->inverse[0], n, h->inverse);
+  for (int64_t i = 0; i < n && LANES > 1 && nparts > 1; i++) {
+    h->inverse[0][LANES * i + DIM] = 0;
   }
 }
 
 void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
                       double factor, const double *mass_density,
                       const struct bc *const bc[]) {
-  double *mass = h->e[0], *const *wall = h->r; /* free for now */
   const size_t size = (size_t)h->nslots * sizeof(double);
-  h->nparts = nparts;
+  double *mass = h->arena, *wall[DIM]; /* free for now, as e and r are */
+  for (int c = 0; c < DIM; c++) wall[c] = mass + (1 + c) * (int64_t)h->nslots;
+  lay_out(h, nparts);
   h->has_mass = mass_density != NULL;
   h->nskin = h->ncycles = h->rough_sweeps = 0;
   for (int c = 0; c < nparts; c++) memset(wall[c], 0, size);
@@ -278,7 +294,8 @@ void coefficients_set(struct hierarchy *h, int nparts, const double *alpha_f,
   }
   if (h->nranks > 1) memset(mass, 0, size);
   set_leaves(h, alpha_f, factor, mass_density, mass);
-  double *hoop = set_hoops(h, alpha_f, factor);
+  double *hoop =
+      set_hoops(h, alpha_f, factor, mass + (1 + DIM) * (int64_t)h->nslots);
   for (int l = h->nlevels - 1; l >= 0; l--) {
     add_ghosts(h, l, mass);
     set_walls(h, l, bc, wall);

@@ -6,14 +6,16 @@
 #include <string.h>
 
 #include "levels.h"
+#include "talus/memory.h"
 
 enum { SWEEPS_DOWN = 2, SWEEPS_UP = 2 };
 
 /* Relax the first runs of a level, up to `end`, where e is 0 everywhere. */
 static void relax_first(struct hierarchy *h, const struct level *level,
                         int end) {
-  for (int c = 0; c < h->nparts; c++) {
-    for (int32_t i = level->begin; i < run_begin(level, end); i++) {
+  const int64_t last = run_begin(level, end) * h->stride;
+  for (int c = 0; c < count_arrays(h); c++) {
+    for (int64_t i = level->begin * h->stride; i < last; i++) {
       h->e[c][i] = h->inverse[c][i] * h->r[c][i];
     }
   }
@@ -26,12 +28,16 @@ static void restrict_families(struct hierarchy *h, const struct level *level) {
   for (int32_t first = 0; first < level->nfamilies; first += SWEEP_BLOCK) {
     const int32_t left = level->nfamilies - first;
     const int32_t n = left < SWEEP_BLOCK ? left : SWEEP_BLOCK;
-    double sum[DIM][SWEEP_BLOCK] = {{0}};
+    _Alignas(MEM_ALIGNMENT) double block[NODE_ROOM * SWEEP_BLOCK] = {0};
+    double *sum[DIM];
+    set_parts(h, block, SWEEP_BLOCK, sum);
     for (int q = 0; q < nruns; q++) {
       sweep_add_residuals(h, level, q, first, n, sum);
     }
     for (int c = 0; c < h->nparts; c++) {
-      for (int32_t k = 0; k < n; k++) h->r[c][parent[first + k]] = sum[c][k];
+      for (int32_t k = 0; k < n; k++) {
+        h->r[c][parent[first + k] * h->stride] = sum[c][k * h->stride];
+      }
     }
   }
 }
@@ -43,10 +49,12 @@ static double transposed_flux(const struct hierarchy *h,
   const int d = jump->face >> 1, upper = jump->face & 1;
   const int32_t i = jump->fine;
   const double *v = h->e[d], w = (double)h->w[jump->face][i];
-  const double difference = v[h->neighbour[2 * c + 1][i]] -
-                            v[h->neighbour[2 * c][i]] +
-                            v[h->corner[corner_entry(c, 1, d, upper)][i]] -
-                            v[h->corner[corner_entry(c, 0, d, upper)][i]];
+  const int64_t stride = h->stride;
+  const double difference =
+      v[h->neighbour[2 * c + 1][i] * stride] -
+      v[h->neighbour[2 * c][i] * stride] +
+      v[h->corner[corner_entry(c, 1, d, upper)][i] * stride] -
+      v[h->corner[corner_entry(c, 0, d, upper)][i] * stride];
   return (upper ? 0.25 : -0.25) * w * difference;
 }
 
@@ -59,27 +67,30 @@ static void restrict_jumps(struct hierarchy *h, const struct level *level) {
     const double w = (double)h->w[jump->face][i];
     for (int c = 0; c < h->nparts; c++) {
       const bool normal = c == jump->face >> 1;
-      double flux =
-          (velocity && normal ? 2 : 1) * w * (h->e[c][i] - h->e[c][beyond]);
+      const double *e = h->e[c];
+      double flux = (velocity && normal ? 2 : 1) * w *
+                    (e[i * h->stride] - e[beyond * h->stride]);
       if (velocity && !normal) flux -= transposed_flux(h, jump, c);
       if (h->has_bulk && normal) flux += sweep_bulk_flux(h, i, jump->face);
-      h->r[c][jump->coarse] += flux;
+      h->r[c][jump->coarse * h->stride] += flux;
     }
   }
 }
 
 /* Prolong to the virtual children of coarser leaves. */
 static void prolong_jumps(struct hierarchy *h, const struct level *level) {
+  const int64_t stride = h->stride;
   for (int32_t k = level->jump_begin; k < level->jump_end; k++) {
     const struct jump *jump = &h->jump[k];
     for (int c = 0; c < h->nparts; c++) {
       const double *e = h->e[c];
-      double sum = e[jump->coarse];
+      double sum = e[jump->coarse * stride];
       for (int d = 0; d < DIM; d++) {
+        const int32_t *node = jump->node[d];
         sum += (double)jump->weight[d] *
-               (e[jump->node[d][1]] - e[jump->node[d][0]]);
+               (e[node[1] * stride] - e[node[0] * stride]);
       }
-      h->e[c][h->nslots + k] = sum;
+      h->e[c][(h->nslots + k) * stride] = sum;
     }
   }
 }
@@ -91,25 +102,26 @@ static void prolong_block(struct hierarchy *h, int l, int c, int32_t first,
   const struct level *level = &h->level[l];
   const int32_t *parent = h->family_parent + level->family_begin + first;
   const double *above = h->e[c];
+  const int64_t stride = h->stride;
   double value[SWEEP_BLOCK], step[NFACE][SWEEP_BLOCK];
-  for (int32_t k = 0; k < n; k++) value[k] = above[parent[k]];
+  for (int32_t k = 0; k < n; k++) value[k] = above[parent[k] * stride];
   for (int f = 0; f < NFACE; f++) {
     const float *limit = h->limit[f] + level->family_begin + first;
     for (int32_t k = 0; k < n; k++) {
-      const double next = above[h->neighbour[f][parent[k]]];
+      const double next = above[h->neighbour[f][parent[k]] * stride];
       step[f][k] = 0.25 * (next - value[k]) * (double)limit[k];
     }
   }
 #pragma GCC unroll 8
   for (int q = 0; q < NCHILD; q++) {
     const int child = run_child(q);
-    double *e = h->e[c] + run_begin(level, q) + first;
+    double *e = h->e[c] + (run_begin(level, q) + first) * stride;
     if (q < begin) continue;
     for (int32_t k = 0; k < n; k++) {
       double sum = value[k];
 #pragma GCC unroll 3
       for (int d = 0; d < DIM; d++) sum += step[2 * d + (child >> d & 1)][k];
-      e[k] += sum;
+      e[k * stride] += sum;
     }
   }
 }
@@ -128,17 +140,19 @@ static void prolong(struct hierarchy *h, int l) {
 }
 
 static void copy_ghosts(struct hierarchy *h, int l) {
-  plan_run(&h->level[l].copy, h->nparts, h->e, 1, false);
+  run_plan(h, &h->level[l].copy, h->e, false);
 }
 
 /* Set the images beyond walls. */
 static void reflect(struct hierarchy *h, int l) {
   const struct level *level = &h->level[l];
+  const int64_t stride = h->stride, begin = h->nslots + h->njumps;
   for (int c = 0; c < h->nparts; c++) {
-    double *image = h->e[c] + h->nslots + h->njumps;
+    double *e = h->e[c], *image = e + begin * stride;
     for (int32_t k = level->mirror_begin; k < level->mirror_end; k++) {
       const struct mirror *mirror = &h->mirror[k];
-      image[k] = h->beyond[l][c][mirror->patch] * h->e[c][mirror->source];
+      image[k * stride] =
+          h->beyond[l][c][mirror->patch] * e[mirror->source * stride];
     }
   }
 }
@@ -146,12 +160,14 @@ static void reflect(struct hierarchy *h, int l) {
 /* Set the images of the nodes of run q of a level, NCHILD: of ghosts. */
 static void reflect_run(struct hierarchy *h, int l, int q) {
   const int32_t *begin = h->mirror_run + l * (NCHILD + 1) + q;
+  const int64_t stride = h->stride;
   for (int c = 0; c < h->nparts; c++) {
     const double *beyond = h->beyond[l][c];
-    double *e = h->e[c], *image = e + h->nslots + h->njumps;
+    double *e = h->e[c], *image = e + (h->nslots + h->njumps) * stride;
     for (int32_t k = begin[0]; k < begin[1]; k++) {
       const int32_t n = h->mirror_order[k];
-      image[n] = beyond[h->mirror[n].patch] * e[h->mirror[n].source];
+      const struct mirror *mirror = &h->mirror[n];
+      image[n * stride] = beyond[mirror->patch] * e[mirror->source * stride];
     }
   }
 }
@@ -206,13 +222,13 @@ static void smooth(struct hierarchy *h, int l, int nsweeps, bool from_zero) {
 
 static void cycle(struct hierarchy *h) {
   for (int l = h->nlevels - 1; l > 0; l--) {
-    plan_run(&h->level[l].add, h->nparts, h->r, 1, true);
+    run_plan(h, &h->level[l].add, h->r, true);
     smooth(h, l, SWEEPS_DOWN, true);
     restrict_families(h, &h->level[l]);
     if (h->nparts > 1) skin_nodes_restrict(h, l);
     restrict_jumps(h, &h->level[l]);
   }
-  plan_run(&h->level[0].add, h->nparts, h->r, 1, true);
+  run_plan(h, &h->level[0].add, h->r, true);
   coarse_solve(h);
   copy_ghosts(h, 0);
   for (int l = 1; l < h->nlevels; l++) {
@@ -227,22 +243,24 @@ static void cycle(struct hierarchy *h) {
 
 void cycle_run(struct hierarchy *h, double factor, const double *r, double *e) {
   const struct mesh *mesh = h->mesh;
-  const size_t size = (size_t)h->nslots * sizeof(double);
+  const int64_t n = h->nslots, stride = h->stride, nleaves = mesh->nleaves;
+  const size_t each = (size_t)stride * sizeof(double);
   h->ncycles++;
+  for (int c = 0; c < count_arrays(h); c++) {
+    memset(h->e[c], 0, (size_t)(n + h->njumps + h->nmirrors) * each);
+    /* what others add to, and the fourth lane */
+    if (h->nranks > 1 || stride > 1) memset(h->r[c], 0, (size_t)n * each);
+  }
   for (int c = 0; c < h->nparts; c++) {
-    memset(h->e[c], 0,
-           size + (size_t)(h->njumps + h->nmirrors) * sizeof(double));
-    if (h->nranks > 1) memset(h->r[c], 0, size); /* what others add to */
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      h->r[c][h->leaf_slot[i]] =
-          factor * mesh_volume(mesh, i) * r[(int64_t)c * mesh->nleaves + i];
+      h->r[c][h->leaf_slot[i] * stride] =
+          factor * mesh_volume(mesh, i) * r[c * nleaves + i];
     }
   }
   cycle(h);
   for (int c = 0; c < h->nparts; c++) {
-    const int64_t at = (int64_t)c * mesh->nleaves;
     for (int32_t i = 0; i < mesh->nleaves; i++) {
-      e[at + i] = h->e[c][h->leaf_slot[i]];
+      e[c * nleaves + i] = h->e[c][h->leaf_slot[i] * stride];
     }
   }
 }

@@ -241,7 +241,7 @@ static int64_t arena_length(const struct hierarchy *h) {
   const int64_t inner = nvalues(h) + h->nslots + h->apart_room;
   const int64_t hoop = mesh_is_axisymmetric(mesh) ? mesh->nfaces_all : 0;
   const int64_t outer = DIM * ((int64_t)mesh->ncells + mesh->nfaces_all) + hoop;
-  return DIM * inner > outer ? DIM * inner : outer;
+  return NODE_ROOM * inner > outer ? NODE_ROOM * inner : outer;
 }
 
 /* Return how many nodes of a level wait for others of their colour. */
@@ -260,12 +260,10 @@ static void allocate(struct hierarchy *h) {
   h->beyond = mem_alloc((size_t)h->nlevels, sizeof *h->beyond);
   h->apart_room = most_apart(h);
   h->arena = MEM_NEW(double, arena_length(h));
-  for (int c = 0; c < DIM; c++) {
-    h->inverse[c] = MEM_NEW(double, h->nslots);
-    h->e[c] = h->arena + c * nvalues(h);
-    h->r[c] = h->arena + DIM * nvalues(h) + (int64_t)c * h->nslots;
-  }
-  h->apart = h->arena + DIM * (nvalues(h) + h->nslots);
+  h->inverse[0] = MEM_NEW(double, NODE_ROOM *(int64_t)h->nslots);
+  h->e[0] = h->arena;
+  h->r[0] = h->e[0] + NODE_ROOM * nvalues(h);
+  h->apart = h->r[0] + NODE_ROOM * (int64_t)h->nslots;
   h->work_cells = h->arena;
   h->work_faces = h->arena + (int64_t)DIM * mesh->ncells;
   for (int k = 0; k < 3; k++) {
@@ -377,6 +375,6 @@ void hierarchy_destroy(struct hierarchy *h) {
     mem_free(h->limit[f]);
   }
   for (int e = 0; e < NCORNER; e++) mem_free(h->corner[e]);
-  for (int c = 0; c < DIM; c++) mem_free(h->inverse[c]);
+  mem_free(h->inverse[0]);
   mem_free(h);
 }

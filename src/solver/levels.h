@@ -6,6 +6,10 @@
  * children of one node; it is whole on one rank. On level l >= 1 the slots
  * are sorted by child number, red ones first, then by family: what a sweep over
  * one colour reads of its own follows in memory, and so do the siblings.
+ *
+ * Velocities in 3D are kept as (x, y, z, 0) node by node, so that a neighbour
+ * takes one load; elsewhere a component is an array. Component c of node i is
+ * v[c][i * stride] in both.
  */
 #ifndef TALUS_SOLVER_LEVELS_H
 #define TALUS_SOLVER_LEVELS_H
@@ -22,8 +26,10 @@ enum {
   NPAIR = DIM * (DIM - 1) / 2, /* pairs of axes */
   NCORNER = 4 * NPAIR,         /* nodes diagonally across an edge (3D) or a
                                   corner (2D) */
-  SWEEP_BLOCK = 64,            /* nodes that are taken together */
-  LEVEL_GATHERED = 256         /* nodes of a level that one rank does alone */
+  LANES = DIM == 3 ? 4 : 1,    /* numbers of a velocity side by side */
+  NODE_ROOM = DIM == 3 ? LANES : DIM, /* numbers of a node */
+  SWEEP_BLOCK = 64,                   /* nodes that are taken together */
+  LEVEL_GATHERED = 256 /* nodes of a level that one rank does alone */
 };
 
 struct level {
@@ -105,16 +111,17 @@ struct hierarchy {
   int32_t *mirror_run;   /* [nlevels * (NCHILD + 1) + 1], where each begins */
   /* Operator: set by coefficients_set for each solve */
   int nparts;      /* 1, or DIM: velocity */
+  int64_t stride;  /* from node to node: LANES of a velocity, else 1 */
   bool has_mass;   /* somewhere, perhaps */
   float *w[NFACE]; /* [nslots] alpha area / distance, 0 at a wall;
                       the inverse is exactly that of what is rounded */
   bool has_bulk;
   float *bulk[NFACE]; /* [nslots] likewise with lambda (bulk.c); NULL: never */
-  double *inverse[DIM]; /* [nslots] 1 / diagonal, 0 if it is 0 */
-  double *e[DIM];       /* [nslots + njumps + nmirrors] correction */
-  double *r[DIM];       /* [nslots] residual */
-  double *apart;        /* [DIM * apart_room] e of runs that wait for the others
-                           of their colour; none in 2D */
+  double *inverse[DIM]; /* [nslots * stride] 1 / diagonal, 0 if it is 0 */
+  double *e[DIM];       /* [(nslots + njumps + nmirrors) * stride] correction */
+  double *r[DIM];       /* [nslots * stride] residual */
+  double *apart;        /* [LANES * apart_room] e of runs that wait for the
+                           others of their colour; none in 2D */
   int64_t apart_room;
   /* Conductance across a side of a family over that inside it, at most 1,
    * [families] */
@@ -144,6 +151,20 @@ struct hierarchy {
   struct krylov_space *krylov;
 };
 
+/* Set v to the components in a block of n nodes. */
+static inline void set_parts(const struct hierarchy *h, double *block,
+                             int64_t n, double *v[DIM]) {
+  for (int c = 0; c < DIM; c++) v[c] = block + (h->stride > 1 ? c : c * n);
+}
+/* Return in how many arrays the components are. */
+static inline int count_arrays(const struct hierarchy *h) {
+  return h->stride > 1 ? 1 : h->nparts;
+}
+/* Run a plan for values of nodes. */
+static inline void run_plan(const struct hierarchy *h, struct plan *plan,
+                            double *const v[DIM], bool add) {
+  plan_run(plan, count_arrays(h), v, (int)h->stride, add);
+}
 /* Return the slot of child c of family k of a level. */
 static inline int32_t family_slot(const struct level *level, int32_t k, int c) {
   const int black = __builtin_popcount((unsigned)c) & 1;
@@ -198,11 +219,11 @@ void sweep_relax_rough(struct hierarchy *h, int l, int first, int end);
 static inline int sweep_residual_runs(int nparts) {
   return nparts > 1 ? NCHILD - 1 : HALF;
 }
-/* Add the residuals of n <= SWEEP_BLOCK nodes of such a run, from number
- * `first` on, to sum [nparts]. */
+/* Add the residuals of n nodes of such a run, from number `first` on, to sum[c]
+ * [n * stride]. */
 void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
                          int q, int32_t first, int32_t n,
-                         double (*sum)[SWEEP_BLOCK]);
+                         double *const sum[DIM]);
 /* Return what lambda adds to the flux out of node i through its face f. */
 double sweep_bulk_flux(const struct hierarchy *h, int32_t i, int f);
 /* Find e = A^-1 r, roughly (cycle.c): r [nparts * nleaves] per volume, times

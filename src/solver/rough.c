@@ -70,7 +70,7 @@ void rough_watch(struct hierarchy *h, double residual) {
     h->rough = MEM_NEW(int32_t, h->nowned);
     h->rough_begin = MEM_NEW(int32_t, h->nlevels * NCHILD + 1);
   }
-  set_marks(h, h->e[0]);
-  list_marked(h, h->e[0]);
+  set_marks(h, h->arena);
+  list_marked(h, h->arena);
   h->rough_sweeps = ROUGH_SWEEPS;
 }

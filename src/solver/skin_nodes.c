@@ -70,7 +70,7 @@ static bool set_rows(const struct hierarchy *h, const double *m,
   bool odd = false;
   double least[DIM];
   for (int c = 0; c < DIM; c++) {
-    const double inverse = h->inverse[c][node->slot];
+    const double inverse = h->inverse[c][node->slot * h->stride];
     node->diagonal[c] = inverse > 0 ? 1 / inverse : 1;
     least[c] = skin->slight * node->diagonal[c];
   }
@@ -206,8 +206,8 @@ static inline void add_rows(const struct hierarchy *h,
       const int p = pair_number(a, b);
       const double *first = node->row[p][0], *second = node->row[p][1];
       for (int k = 0; k < 9; k++) {
-        sum[a] += first[k] * h->e[b][node->around[p][k]];
-        sum[b] += second[k] * h->e[a][node->around[p][k]];
+        sum[a] += first[k] * h->e[b][node->around[p][k] * h->stride];
+        sum[b] += second[k] * h->e[a][node->around[p][k] * h->stride];
       }
     }
   }
@@ -217,14 +217,15 @@ static inline void add_rows(const struct hierarchy *h,
  * diagonal. */
 static void relax_again(struct hierarchy *h, struct skin_node *node) {
   double pull[DIM], before[DIM];
+  const int64_t i = node->slot * h->stride;
   for (int c = 0; c < DIM; c++) {
-    before[c] = h->e[c][node->slot];
+    before[c] = h->e[c][i];
     pull[c] = before[c] * node->diagonal[c];
-    h->e[c][node->slot] = 0;
+    h->e[c][i] = 0;
   }
   add_rows(h, node, pull);
   for (int c = 0; c < DIM; c++) {
-    h->e[c][node->slot] = before[c];
+    h->e[c][i] = before[c];
     node->next[c] = 0;
     for (int d = 0; d < DIM; d++) {
       node->next[c] += node->inverse[c][d] * pull[d];
@@ -240,7 +241,9 @@ void skin_nodes_relax(struct hierarchy *h, int l, int first, int end) {
   }
   for (int32_t k = begin[first]; k < begin[end]; k++) {
     const struct skin_node *node = &h->skin_node[k];
-    for (int c = 0; c < DIM; c++) h->e[c][node->slot] = node->next[c];
+    for (int c = 0; c < DIM; c++) {
+      h->e[c][node->slot * h->stride] = node->next[c];
+    }
   }
 }
 
@@ -252,6 +255,8 @@ void skin_nodes_restrict(struct hierarchy *h, int l) {
     const struct skin_node *node = &h->skin_node[k];
     double sum[DIM] = {0};
     add_rows(h, node, sum);
-    for (int c = 0; c < DIM; c++) h->r[c][node->parent] += sum[c];
+    for (int c = 0; c < DIM; c++) {
+      h->r[c][node->parent * h->stride] += sum[c];
+    }
   }
 }

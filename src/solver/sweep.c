@@ -7,8 +7,9 @@
  * compiled for 1, DIM and both, and for each child number: siblings
  * are then a fixed number of slots away, which leaves half of the neighbours to
  * be looked up. Nodes of one child number do not see each other, so that their
- * loops may use vectors (ivdep). These loops are most of the time of a cycle.
- * In 3D they take seconds to compile, so that each is compiled once. */
+ * loops may use vectors (ivdep); in 3D a vector is one node of a velocity
+ * (levels.h). These loops are most of the time of a cycle. In 3D they take
+ * seconds to compile, so that each is compiled once. */
 #include <float.h>
 #include <string.h>
 
@@ -56,6 +57,11 @@ KERNEL int32_t diagonal(const struct hierarchy *h, struct run run, int32_t i,
              : h->corner[corner_entry(a, upper_a, b, upper_b)][i];
 }
 
+/* Place of a value in the array of its component. */
+KERNEL int64_t place(int32_t i, int nparts) {
+  return (int64_t)i * (nparts > 1 ? LANES : 1);
+}
+
 /* Stress of the transposed gradient, integrated over the sides of node i: on
  * a face of direction d, differences along axis c of component d, summed over
  * both sides of the face, are 4 h times du_d/dx_c there. */
@@ -66,12 +72,14 @@ KERNEL double transposed(const struct hierarchy *h, struct run run, int32_t i,
   for (int d = 0; d < DIM; d++) {
     if (d == c) continue;
     const double *v = h->e[d];
-    const double centre =
-        v[across(h, run, i, 2 * c + 1)] - v[across(h, run, i, 2 * c)];
-    const double upper = centre + v[diagonal(h, run, i, c, 1, d, 1)] -
-                         v[diagonal(h, run, i, c, 0, d, 1)];
-    const double lower = centre + v[diagonal(h, run, i, c, 1, d, 0)] -
-                         v[diagonal(h, run, i, c, 0, d, 0)];
+    const double centre = v[place(across(h, run, i, 2 * c + 1), DIM)] -
+                          v[place(across(h, run, i, 2 * c), DIM)];
+    const double upper = centre +
+                         v[place(diagonal(h, run, i, c, 1, d, 1), DIM)] -
+                         v[place(diagonal(h, run, i, c, 0, d, 1), DIM)];
+    const double lower = centre +
+                         v[place(diagonal(h, run, i, c, 1, d, 0), DIM)] -
+                         v[place(diagonal(h, run, i, c, 0, d, 0), DIM)];
     sum += (double)h->w[2 * d + 1][i] * upper - (double)h->w[2 * d][i] * lower;
   }
   return 0.25 * sum;
@@ -87,9 +95,10 @@ KERNEL double divergence_along(const struct hierarchy *h, struct run run,
   for (int d = 0; d < DIM; d++) {
     const double *v = h->e[d];
     if (d == c) continue;
-    sum += v[across(h, run, i, 2 * d + 1)] - v[across(h, run, i, 2 * d)] +
-           v[diagonal(h, run, i, c, upper, d, 1)] -
-           v[diagonal(h, run, i, c, upper, d, 0)];
+    sum += v[place(across(h, run, i, 2 * d + 1), DIM)] -
+           v[place(across(h, run, i, 2 * d), DIM)] +
+           v[place(diagonal(h, run, i, c, upper, d, 1), DIM)] -
+           v[place(diagonal(h, run, i, c, upper, d, 0), DIM)];
   }
   return sum;
 }
@@ -97,9 +106,9 @@ KERNEL double divergence_along(const struct hierarchy *h, struct run run,
 /* Return how lambda (bulk.c) pulls node i. */
 KERNEL double bulk_pull(const struct hierarchy *h, struct run run, int32_t i,
                         int c) {
-  const double lower = h->e[c][across(h, run, i, 2 * c)] -
+  const double lower = h->e[c][place(across(h, run, i, 2 * c), DIM)] -
                        0.25 * divergence_along(h, run, i, 2 * c);
-  const double upper = h->e[c][across(h, run, i, 2 * c + 1)] +
+  const double upper = h->e[c][place(across(h, run, i, 2 * c + 1), DIM)] +
                        0.25 * divergence_along(h, run, i, 2 * c + 1);
   return (double)h->bulk[2 * c][i] * lower +
          (double)h->bulk[2 * c + 1][i] * upper;
@@ -108,14 +117,52 @@ KERNEL double bulk_pull(const struct hierarchy *h, struct run run, int32_t i,
 /* r_i + sum of what the neighbours contribute. */
 KERNEL double pull(const struct hierarchy *h, struct run run, int32_t i, int c,
                    int nparts, bool bulk) {
-  double sum = h->r[c][i];
+  double sum = h->r[c][place(i, nparts)];
 #pragma GCC unroll 6
   for (int f = 0; f < NFACE; f++) {
-    const double w = (double)h->w[f][i] * h->e[c][across(h, run, i, f)];
+    const double w =
+        (double)h->w[f][i] * h->e[c][place(across(h, run, i, f), nparts)];
     sum += nparts > 1 && f >> 1 == c ? 2 * w : w;
   }
   if (bulk) sum += bulk_pull(h, run, i, c);
   return nparts > 1 ? sum + transposed(h, run, i, c) : sum;
+}
+
+/* A node of a velocity in 3D. */
+typedef double quad __attribute__((vector_size(4 * sizeof(double)), may_alias));
+
+/* Set *sum to what `pull` gives of all components, without bulk viscosity. */
+KERNEL void pull_quad(const struct hierarchy *h, struct run run, int32_t i,
+                      quad *sum) {
+  static const quad unit[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  const quad *e = (const quad *)h->e[0];
+  quad lower[DIM], upper[DIM], turned[DIM] = {{0}};
+  *sum = ((const quad *)h->r[0])[i];
+#pragma GCC unroll 3
+  for (int d = 0; d < DIM; d++) {
+    const double wl = (double)h->w[2 * d][i], wu = (double)h->w[2 * d + 1][i];
+    lower[d] = wl * unit[d], upper[d] = wu * unit[d];
+    *sum += (1 + unit[d]) * (wl * e[across(h, run, i, 2 * d)] +
+                             wu * e[across(h, run, i, 2 * d + 1)]);
+  }
+#pragma GCC unroll 3
+  for (int c = 0; c < DIM; c++) {
+    const quad centre =
+        e[across(h, run, i, 2 * c + 1)] - e[across(h, run, i, 2 * c)];
+#pragma GCC unroll 3
+    for (int d = 0; d < DIM; d++) {
+      if (d == c) continue;
+      const quad above = e[diagonal(h, run, i, c, 1, d, 1)] -
+                         e[diagonal(h, run, i, c, 0, d, 1)];
+      const quad below = e[diagonal(h, run, i, c, 1, d, 0)] -
+                         e[diagonal(h, run, i, c, 0, d, 0)];
+      /* component d of it pulls component c */
+      turned[(d - c + DIM) % DIM] +=
+          upper[d] * (centre + above) - lower[d] * (centre + below);
+    }
+  }
+  const quad s = turned[1], t = turned[DIM - 1];
+  *sum += 0.25 * ((quad){s[1], s[2], s[0], 0} + (quad){t[2], t[0], t[1], 0});
 }
 
 /* Where relaxed values go: of slot i to e[c][i - shift]. */
@@ -126,13 +173,21 @@ struct target {
 
 KERNEL void relax_node(const struct hierarchy *h, struct run run, int32_t i,
                        int nparts, bool bulk, const struct target *to) {
+  if (DIM == 3 && nparts > 1 && !bulk) {
+    quad sum;
+    pull_quad(h, run, i, &sum);
+    ((quad *)to->e[0])[i - to->shift] = ((const quad *)h->inverse[0])[i] * sum;
+    return;
+  }
   double e[DIM];
 #pragma GCC unroll 3
   for (int c = 0; c < nparts; c++) {
-    e[c] = h->inverse[c][i] * pull(h, run, i, c, nparts, bulk);
+    e[c] = h->inverse[c][place(i, nparts)] * pull(h, run, i, c, nparts, bulk);
   }
 #pragma GCC unroll 3
-  for (int c = 0; c < nparts; c++) to->e[c][i - to->shift] = e[c];
+  for (int c = 0; c < nparts; c++) {
+    to->e[c][place(i - to->shift, nparts)] = e[c];
+  }
 }
 
 /* One copy for each child number. */
@@ -173,9 +228,8 @@ static struct target target_of(const struct hierarchy *h,
                                int end) {
   struct target to = {.shift = 0};
   const bool apart = h->nparts > 1 && q < end - 1;
-  for (int c = 0; c < h->nparts; c++) {
-    to.e[c] = apart ? h->apart + (int64_t)c * h->apart_room : h->e[c];
-  }
+  set_parts(h, h->apart, h->apart_room, to.e);
+  for (int c = 0; c < DIM && !apart; c++) to.e[c] = h->e[c];
   if (apart) to.shift = run_begin(level, first);
   return to;
 }
@@ -193,24 +247,34 @@ void sweep_relax(struct hierarchy *h, const struct level *level, int first,
     }
   }
   if (h->nparts == 1 || end == first + 1) return;
-  const int64_t napart = (int64_t)(end - 1 - first) * level->nfamilies;
-  for (int c = 0; c < h->nparts; c++) {
-    memcpy(h->e[c] + run_begin(level, first), h->apart + c * h->apart_room,
-           (size_t)napart * sizeof(double));
+  const int64_t n = (end - 1 - first) * level->nfamilies * h->stride;
+  for (int c = 0; c < count_arrays(h); c++) {
+    memcpy(h->e[c] + run_begin(level, first) * h->stride,
+           h->apart + c * h->apart_room, (size_t)n * sizeof(double));
   }
 }
 
 /* e is 0 where the inverse is. */
 KERNEL double residual(const struct hierarchy *h, struct run run, int32_t i,
                        int c, int nparts, bool bulk) {
+  const int64_t k = place(i, nparts);
   return pull(h, run, i, c, nparts, bulk) -
-         h->e[c][i] / (h->inverse[c][i] + DBL_MIN);
+         h->e[c][k] / (h->inverse[c][k] + DBL_MIN);
+}
+
+/* Add the residual of node i, all components, to *sum. */
+KERNEL void add_residual_quad(const struct hierarchy *h, struct run run,
+                              int32_t i, quad *sum) {
+  const quad e = ((const quad *)h->e[0])[i];
+  const quad inverse = ((const quad *)h->inverse[0])[i];
+  quad all;
+  pull_quad(h, run, i, &all);
+  *sum += all - e / (inverse + DBL_MIN);
 }
 
 KERNEL void add_residuals(const struct hierarchy *h, const struct level *level,
                           int q, int32_t first, int32_t n,
-                          double (*restrict sum)[SWEEP_BLOCK], int nparts,
-                          bool bulk) {
+                          double *const sum[DIM], int nparts, bool bulk) {
   const int nruns = sweep_residual_runs(nparts);
 #pragma GCC unroll 8
   for (int number = 0; number < nruns; number++) {
@@ -218,9 +282,14 @@ KERNEL void add_residuals(const struct hierarchy *h, const struct level *level,
     if (number != q) continue;
 #pragma GCC ivdep
     for (int32_t k = 0; k < n; k++) {
+      const int32_t i = run.begin + first + k;
+      if (DIM == 3 && nparts > 1 && !bulk) {
+        add_residual_quad(h, run, i, (quad *)sum[0] + k);
+        continue;
+      }
 #pragma GCC unroll 3
       for (int c = 0; c < nparts; c++) {
-        sum[c][k] += residual(h, run, run.begin + first + k, c, nparts, bulk);
+        sum[c][place(k, nparts)] += residual(h, run, i, c, nparts, bulk);
       }
     }
   }
@@ -228,26 +297,26 @@ KERNEL void add_residuals(const struct hierarchy *h, const struct level *level,
 
 static void residuals_scalar(const struct hierarchy *h,
                              const struct level *level, int q, int32_t first,
-                             int32_t n, double (*sum)[SWEEP_BLOCK]) {
+                             int32_t n, double *const sum[DIM]) {
   add_residuals(h, level, q, first, n, sum, 1, false);
 }
 
 static void residuals_velocity(const struct hierarchy *h,
                                const struct level *level, int q, int32_t first,
-                               int32_t n, double (*sum)[SWEEP_BLOCK]) {
+                               int32_t n, double *const sum[DIM]) {
   add_residuals(h, level, q, first, n, sum, DIM, false);
 }
 
 static void residuals_compressible(const struct hierarchy *h,
                                    const struct level *level, int q,
                                    int32_t first, int32_t n,
-                                   double (*sum)[SWEEP_BLOCK]) {
+                                   double *const sum[DIM]) {
   add_residuals(h, level, q, first, n, sum, DIM, true);
 }
 
 void sweep_add_residuals(const struct hierarchy *h, const struct level *level,
                          int q, int32_t first, int32_t n,
-                         double (*sum)[SWEEP_BLOCK]) {
+                         double *const sum[DIM]) {
   if (h->nparts == 1) {
     residuals_scalar(h, level, q, first, n, sum);
   } else if (h->has_bulk) {
@@ -280,11 +349,12 @@ void sweep_relax_rough(struct hierarchy *h, int l, int first, int end) {
       relax_nodes(h, n, node, DIM, false, &to);
     }
   }
+  double *apart[DIM];
+  set_parts(h, h->apart, h->apart_room, apart);
   for (int c = 0; c < h->nparts && h->nparts > 1; c++) {
-    const double *apart = h->apart + (int64_t)c * h->apart_room;
     for (int32_t k = begin[first]; k < begin[end - 1]; k++) {
-      const int32_t i = h->rough[k];
-      h->e[c][i] = apart[i - run_begin(level, first)];
+      const int64_t i = h->rough[k], at = i - run_begin(level, first);
+      h->e[c][i * h->stride] = apart[c][at * h->stride];
     }
   }
 }
@@ -293,6 +363,6 @@ double sweep_bulk_flux(const struct hierarchy *h, int32_t i, int f) {
   const struct run any = {.child = ANY_CHILD};
   const double *e = h->e[f >> 1];
   return (double)h->bulk[f][i] *
-         (e[i] - e[h->neighbour[f][i]] -
+         (e[place(i, DIM)] - e[place(h->neighbour[f][i], DIM)] -
           (f & 1 ? 0.25 : -0.25) * divergence_along(h, any, i, f));
 }
