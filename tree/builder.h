@@ -33,7 +33,7 @@ static inline int32_t node_name(int kind, int64_t number) {
 }
 
 /* Tags of the hash table; averages use their level + 1. */
-enum { TAG_LEAF = 0, TAG_BOUNDARY = 100, TAG_FACE = 101 };
+enum { TAG_BOUNDARY = 100, TAG_FACE = 101 };
 
 struct average {
   uint64_t key;
@@ -47,12 +47,21 @@ struct boundary_node {
   double x[DIM], h;
 };
 
+/* Sorted keys, and where pieces of 2^shift of them begin. */
+struct key_index {
+  const uint64_t *key; /* [n], borrowed */
+  int32_t n;
+  int shift;
+  int32_t *begin; /* [pieces + 1] */
+};
+
 struct builder {
   struct mesh *mesh;
   const struct brick *brick;
   const struct forest_layout *layout;
   const uint64_t *first_keys;
-  struct hash hash;
+  struct key_index leaves, ghosts;
+  struct hash hash; /* of nodes and faces that are no leaves' */
   struct average *average;
   int32_t naverages, average_capacity;
   int32_t *group_of;   /* [nleaves + nghosts] virtual group, -1 */
@@ -73,7 +82,13 @@ void request_add(struct builder *b, uint64_t key, int32_t tag, int rank,
 /* Find the rank that holds `key`. */
 int key_rank(const struct builder *b, uint64_t key);
 
-/* Build, mesh_ghost.c: leaves, ghosts, their geometry and hash. */
+/* Return the leaf or ghost that covers `key`, -1: none that is known. */
+int32_t leaf_at(const struct builder *b, uint64_t key);
+/* Make the index of n sorted keys, of which index_end frees the work. */
+void index_begin(struct key_index *index, const uint64_t *key, int32_t n);
+void index_end(struct key_index *index);
+
+/* Build, mesh_ghost.c: leaves, ghosts, their geometry and index. */
 void build_leaves(struct builder *b);
 /* Build, mesh_stencil.c: stencils and helper nodes, with final indices. */
 void build_stencils(struct builder *b);

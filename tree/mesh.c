@@ -28,6 +28,8 @@ struct mesh *mesh_new(struct forest *forest) {
   build_faces(&b);
   if (b.layout->axisymmetric) build_rings(&b);
   hash_end(&b.hash);
+  index_end(&b.leaves);
+  index_end(&b.ghosts);
   mem_free(b.average);
   mem_free(b.group_of);
   mem_free(b.group_leaf);

@@ -94,7 +94,7 @@ static void fine_faces(struct builder *b, int32_t i, int f,
   for (int c = 0; c < NCHILD; c++) {
     if ((c >> d & 1) == side) continue; /* not on our side */
     uint64_t child = key + (uint64_t)c * morton_span(level + 1);
-    int32_t leaf = hash_find(&b->hash, child, TAG_LEAF);
+    int32_t leaf = leaf_at(b, child);
     CHECK(leaf >= 0 && mesh->level[leaf] == level + 1, "no finer leaf");
     fine[n++] = leaf < mesh->nleaves ? mesh->cell_face[leaf][f ^ 1]
                                      : ghost_face(b, leaf, f ^ 1, nghost);
@@ -108,7 +108,7 @@ static void ask_faces(struct builder *b) {
   struct plan_request *asked =
       plan_ask(plan, b->nrequests, b->request, &nasked);
   for (int64_t k = 0; k < nasked; k++) {
-    int32_t leaf = hash_find(&b->hash, asked[k].key, TAG_LEAF);
+    int32_t leaf = leaf_at(b, asked[k].key);
     CHECK(leaf >= 0 && leaf < mesh->nleaves, "asked for an unknown face");
     int32_t face = mesh->cell_face[leaf][asked[k].tag];
     CHECK(face >= 0 && face < mesh->nfaces, "asked for a face of another");

@@ -149,7 +149,9 @@ static void set_geometry(struct builder *b) {
   const double unit = b->layout->size / (double)morton_edge(0);
   mesh->x = mem_alloc((size_t)n, sizeof *mesh->x);
   mesh->h = MEM_NEW(double, n);
-  hash_begin(&b->hash, (int64_t)n + n / 4); /* leaves and helper nodes */
+  index_begin(&b->leaves, mesh->key, mesh->nleaves);
+  index_begin(&b->ghosts, mesh->key + mesh->nleaves, mesh->nghosts);
+  hash_begin(&b->hash, n / 8);
   for (int32_t i = 0; i < n; i++) {
     int64_t x[DIM];
     const double edge = (double)morton_edge(mesh->level[i]);
@@ -158,7 +160,6 @@ static void set_geometry(struct builder *b) {
     for (int d = 0; d < DIM; d++) {
       mesh->x[i][d] = b->layout->origin[d] + unit * ((double)x[d] + 0.5 * edge);
     }
-    hash_insert(&b->hash, mesh->key[i], TAG_LEAF, i);
   }
 }
 

@@ -26,7 +26,7 @@ static int32_t average_get(struct builder *b, uint64_t key, int level);
 static int32_t average_child_get(struct builder *b, uint64_t key, int level) {
   const struct mesh *mesh = b->mesh;
   if (!is_local(b, key, level)) return -1;
-  int32_t leaf = hash_find(&b->hash, key, TAG_LEAF);
+  const int32_t leaf = leaf_at(b, key);
   if (leaf >= 0 && mesh->level[leaf] == level) {
     return leaf < mesh->nleaves ? leaf : -1;
   }
@@ -63,13 +63,8 @@ static int32_t virtual_get(struct builder *b, int32_t leaf, int child) {
 /* Return the node of the given level that covers the region at `key`. */
 static int32_t node_at(struct builder *b, uint64_t key, int level) {
   const struct mesh *mesh = b->mesh;
-  int32_t leaf = hash_find(&b->hash, key, TAG_LEAF);
+  const int32_t leaf = leaf_at(b, key);
   if (leaf >= 0 && mesh->level[leaf] == level) return leaf;
-  if (leaf < 0 && level > 0) {
-    uint64_t parent = key & ~(morton_span(level - 1) - 1);
-    leaf = hash_find(&b->hash, parent, TAG_LEAF);
-    if (leaf >= 0 && mesh->level[leaf] > level) leaf = -1;
-  }
   if (leaf >= 0 && mesh->level[leaf] < level) {
     CHECK(mesh->level[leaf] == level - 1, "grid is not 2:1 balanced");
     int child = (int)(key / morton_span(level)) & (NCHILD - 1);
@@ -205,7 +200,7 @@ static void ask_virtuals(struct builder *b) {
   struct plan_request *asked =
       plan_ask(plan, b->nrequests, b->request, &nasked);
   for (int64_t k = 0; k < nasked; k++) {
-    int32_t leaf = hash_find(&b->hash, asked[k].key, TAG_LEAF);
+    int32_t leaf = leaf_at(b, asked[k].key);
     CHECK(leaf >= 0 && leaf < mesh->nleaves, "asked for an unknown leaf");
     plan->send_index[k] = node_number(virtual_get(b, leaf, 0)) / NCHILD;
   }
@@ -328,6 +323,23 @@ static void set_plans(struct mesh *mesh, const int32_t *average,
   }
 }
 
+/* Parts along each axis of the keys of a cell and those around it, which are
+ * their sum; false if some are in another tree or outside. */
+static bool find_parts(uint64_t key, int level, uint64_t part[DIM][3]) {
+  const uint64_t tree = key & ~(morton_span(0) - 1);
+  bool inside = true;
+  for (int d = 0; d < DIM; d++) {
+    const uint64_t bits = morton_spread(morton_edge(0) - 1) << d;
+    const uint64_t step = morton_span(level) << d, here = key & bits;
+    part[d][0] = (here - step) & bits;
+    part[d][1] = here;
+    part[d][2] = ((here | ~bits) + step) & bits;
+    inside = inside && part[d][0] < here && part[d][2] > here;
+    for (int k = 0; k < 3 && d == 0; k++) part[d][k] += tree;
+  }
+  return inside;
+}
+
 /* Link the NCHILD leaves from i on with each other if they are siblings. */
 static void link_siblings(const struct mesh *mesh, int32_t i) {
   const int last = NCHILD - 1, level = mesh->level[i];
@@ -357,13 +369,18 @@ static void find_nodes(struct builder *b) {
   memset(mesh->stencil, UNKNOWN, (size_t)mesh->nleaves * sizeof *mesh->stencil);
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     int64_t x[DIM];
+    uint64_t part[DIM][3];
     int32_t *node = mesh->stencil[i];
-    morton_coordinates(b->brick, mesh->key[i], x);
+    const bool inside = find_parts(mesh->key[i], mesh->level[i], part);
+    if (!inside) morton_coordinates(b->brick, mesh->key[i], x);
     node[STENCIL_CENTRE] = i;
     link_siblings(mesh, i);
     for (int s = 0; s < NSTENCIL; s++) {
       if (node[s] >= 0) continue;
-      node[s] = stencil_node(b, x, s, mesh->level[i]);
+      uint64_t key = part[0][s % 3] + part[1][s / 3 % 3];
+      if (DIM == 3) key += part[DIM - 1][s / 9];
+      node[s] = inside ? node_at(b, key, mesh->level[i])
+                       : stencil_node(b, x, s, mesh->level[i]);
       if (node[s] < mesh->nleaves) {
         mesh->stencil[node[s]][NSTENCIL - 1 - s] = i;
       }
@@ -391,8 +408,9 @@ void build_stencils(struct builder *b) {
   mesh->ncells = mesh->begin_boundary + b->nboundary;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
     for (int s = 0; s < NSTENCIL; s++) {
-      mesh->stencil[i][s] =
-          final_index(mesh, average, group, mesh->stencil[i][s]);
+      int32_t *node = &mesh->stencil[i][s];
+      if (node_kind(*node) == KIND_LEAF) continue;
+      *node = final_index(mesh, average, group, *node);
     }
   }
   set_helpers(b, average, group);
