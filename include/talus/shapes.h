@@ -23,7 +23,9 @@
  * flat elsewhere) is not seen. f = 0 is outside, over a volume too, so that a
  * function may be cut off there, max(0, f), or be 1 inside and 0 outside, which
  * is wrong by the smallest pieces that the surface cuts; a piece with f = 0 all
- * over is halved six times at most.
+ * over is halved six times at most. Where two halvings or fewer are left and f
+ * is a plane on the lattice of half-edges, to 1e-11 of its change, the piece is
+ * cut at once.
  *
  * Accuracy of c, with H = h 2^-depth the edge of the smallest piece:
  *   plane surface                      round-off, 1e-14
@@ -49,7 +51,7 @@ typedef double (*shape_level_set)(void *context, const double x[3]);
  * Return the fraction (1) of the square or cube of edge h around `centre`
  * filled by f > 0: 0 to 1. depth >= 0; 3 is enough for smooth surfaces. Calls f
  * about 17 (2^depth) times (2D) or 17 (4^depth) times (3D) where the surface
- * passes, 2^DIM + 1 times in most other cells.
+ * passes, less where that is plane, and 2^DIM + 1 times in most other cells.
  */
 double shape_fraction(shape_level_set f, void *context,
                       const double centre[DIM], double h, int depth);

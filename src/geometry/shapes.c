@@ -9,6 +9,8 @@
 
 /* Halvings of a piece on which f is 0 all over. */
 enum { BLIND = 6 };
+/* Halvings that may be left of a piece where f is a plane. */
+enum { FLAT = 2 };
 
 enum { NVERTEX = 1 << DIM, NLATTICE = DIM == 2 ? 9 : 27 };
 
@@ -136,6 +138,21 @@ static struct piece half(const struct shape *shape, const struct piece *p,
   return q;
 }
 
+/* Is f that of a plane, up to round-off, all over the lattice? */
+static bool is_plane(const struct piece *p, const double lattice[NLATTICE]) {
+  const double tolerance = 1e-11 * variation(p);
+  double n[DIM];
+  if (fit_plane(p, n) > tolerance) return false;
+  for (int s = 0; s < NLATTICE; s++) {
+    double linear = p->centre;
+    for (int d = 0, rest = s; d < DIM; d++, rest /= 3) {
+      linear -= 0.5 * (rest % 3 - 1) * n[d];
+    }
+    if (fabs(lattice[s] - linear) > tolerance) return false;
+  }
+  return true;
+}
+
 /* Return the fraction of a piece that may still be halved `depth` times, and
  * `blind` times where f is 0 all over and tells nothing. */
 static double piece_fraction(const struct shape *shape, const struct piece *p,
@@ -147,6 +164,7 @@ static double piece_fraction(const struct shape *shape, const struct piece *p,
   if (depth <= 0 || blind < 0) return cut_piece(shape, p);
   double lattice[NLATTICE], sum = 0.;
   fill_lattice(shape, p, lattice);
+  if (depth <= FLAT && is_plane(p, lattice)) return cut_piece(shape, p);
   for (int child = 0; child < NVERTEX; child++) {
     struct piece q = half(shape, p, lattice, child);
     const double part = piece_fraction(shape, &q, depth - 1, blind);

@@ -35,10 +35,12 @@ static double sphere_value(void *context, const double x[3]) {
 
 struct plane {
   double n[3], alpha;
+  long calls;
 };
 
 static double plane_value(void *context, const double x[3]) {
-  const struct plane *plane = context;
+  struct plane *plane = context;
+  plane->calls++;
   return plane->alpha - plane->n[0] * x[0] - plane->n[1] * x[1] -
          plane->n[2] * x[2];
 }
@@ -67,7 +69,7 @@ START_TEST(shape_fraction_of_a_plane_is_exact) {
   uint64_t state = 1;
   double error = 0.;
   for (int i = 0; i < 20000; i++) {
-    struct plane plane = {{0.}, 0.};
+    struct plane plane = {{0.}, 0., 0};
     double x[DIM], h = 1. / (1 << i % 7), local = 0., length = 0.;
     for (int d = 0; d < DIM; d++) {
       plane.n[d] = 2. * uniform(&state) - 1.;
@@ -239,6 +241,16 @@ START_TEST(shape_fraction_calls_the_level_set_sparingly) {
 END_TEST
 
 /* Corners are asked for about once in place of 2^DIM times. */
+/* Halves of the cell see the plane and are cut at once. */
+START_TEST(shape_fraction_calls_a_plane_hardly_ever) {
+  struct plane plane = {{0.6, 0.3, 0.1}, 0.5, 0};
+  const double centre[] = {0.5, 0.5, 0.5};
+  const double c = shape_fraction(plane_value, &plane, centre, 1., 3);
+  ck_assert(c > 0. && c < 1.);
+  ck_assert_int_le(plane.calls, DIM == 2 ? 40 : 180);
+}
+END_TEST
+
 START_TEST(shape_memory_gives_the_same_with_fewer_calls) {
   enum { N = DIM == 2 ? 64 : 16 };
   const double h = 1. / N;
@@ -277,6 +289,7 @@ Suite *shapes_suite(void) {
   tcase_add_test(tcase, shape_fraction_sees_a_sphere_smaller_than_the_cell);
   tcase_add_test(tcase, shape_fraction_finds_a_ball_in_a_large_cell);
   tcase_add_test(tcase, shape_fraction_calls_the_level_set_sparingly);
+  tcase_add_test(tcase, shape_fraction_calls_a_plane_hardly_ever);
   tcase_add_test(tcase, shape_memory_gives_the_same_with_fewer_calls);
   suite_add_tcase(suite, tcase);
   return suite;
