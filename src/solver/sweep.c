@@ -128,7 +128,7 @@ KERNEL double pull(const struct hierarchy *h, struct run run, int32_t i, int c,
   return nparts > 1 ? sum + transposed(h, run, i, c) : sum;
 }
 
-/* A node of a velocity in 3D. */
+/* Hold a node of a velocity in 3D. */
 typedef double quad __attribute__((vector_size(4 * sizeof(double)), may_alias));
 
 /* Set *sum to what `pull` gives of all components, without bulk viscosity. */
