@@ -6,6 +6,7 @@
 
 #include "grid.h"
 #include "narrow.h"
+#include "stale.h"
 #include "talus/four_state/properties.h"
 #include "talus/four_state/temperature.h"
 
@@ -68,10 +69,11 @@ START_TEST(a_layer_in_balance_rests) {
 }
 END_TEST
 
-/* Return how far a point lies below a slope of 0.86 of eta_S. */
+/* Return how far a point lies below a slope of 0.86 of eta_S. context[0]: its
+ * height at the left, m. */
 static double slope(void *context, const double x[3]) {
-  (void)context;
-  return 0.05 - 0.36 * x[0] - x[DIM - 1];
+  const double *height = context;
+  return *height - 0.36 * x[0] - x[DIM - 1];
 }
 
 /* A heap on an adapted grid stands for a tenth of a second,
@@ -80,6 +82,7 @@ static double slope(void *context, const double x[3]) {
  * yield (odd) 0.17 and in rings 0.74 mm/s. With tangential differences that
  * read grains which do not touch they have 36 mm/s. */
 START_TEST(a_heap_rests) {
+  double height = 0.05;
   struct four_state_keys keys = four_state_defaults();
   struct four_state_measures m;
   if (_i % 2) keys.regularisation = FOUR_STATE_EXACT;
@@ -88,7 +91,7 @@ START_TEST(a_heap_rests) {
   p.level_min = LEVEL - 2;
   p.criterion[p.ncriteria++] = (struct criterion){
       .type = CRITERION_INTERFACE, .level = LEVEL, .width = 2};
-  p.shape = (struct function){slope, NULL};
+  p.shape = (struct function){slope, &height};
   p.tolerance_pressure = p.tolerance_viscous = 1e-5;
   struct four_state *sim = beads_new(&p);
   const bool done = beads_run(sim, 0.1, 1000);
@@ -461,6 +464,31 @@ START_TEST(grains_in_rings_keep_their_mass) {
 }
 END_TEST
 
+/* A step of a heap at rest, across levels and in half of the box, so that ranks
+ * meet in it, fills the nodes that it reads: whatever they were, it ends the
+ * same. */
+START_TEST(a_step_reads_no_stale_nodes) {
+  double height = 0.13;
+  struct four_state_keys keys = four_state_defaults();
+  keys.regularisation = _i;
+  struct params p = with_levels(box(&keys), 1);
+  p.shape = (struct function){slope, &height};
+  struct four_state *sim[2];
+  bool done = true;
+  for (int k = 0; k < 2; k++) {
+    sim[k] = beads_new(&p);
+    done = done && beads_run(sim[k], 1, 2);
+    stale_set(&sim[k]->grid.fields, sim[k]->grid.mesh, k);
+    done = done && beads_run(sim[k], 1, 1);
+  }
+  const double difference = stale_difference(
+      &sim[0]->grid.fields, &sim[1]->grid.fields, sim[0]->grid.mesh);
+  for (int k = 0; k < 2; k++) four_state_destroy(sim[k]);
+  ck_assert(done);
+  ck_assert_double_eq(difference, 0);
+}
+END_TEST
+
 /* Measures fill the nodes that the contour is read from: what a step or a start
  * has left there says nothing. A cliff across levels ends within a leaf. */
 START_TEST(measures_read_no_stale_nodes) {
@@ -499,6 +527,7 @@ Suite *four_state_suite(void) {
   tcase_add_test(flow, collisions_carry_grains_above_a_wall);
   tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, 1);
   tcase_add_test(flow, measures_read_no_stale_nodes);
+  tcase_add_loop_test(flow, a_step_reads_no_stale_nodes, 0, 2);
   tcase_add_loop_test(flow, plane_shear_heats_as_a_tanh, 0, 2);
   tcase_add_test(flow, thin_grains_heat_by_their_motion);
   tcase_add_test(flow, dust_is_carried);
