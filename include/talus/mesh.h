@@ -257,6 +257,18 @@ static inline double mesh_mean(const struct mesh *mesh, const double *v,
   return sum / NFACE;
 }
 
+/* Loops over faces read the stencils of their owners. In pieces of so many
+ * leaves these are still in cache when the next axis wants them. */
+enum { MESH_PIECE = 256 };
+
+/* Return the end of the faces of axis d from f on whose owners come before a
+ * leaf: those of an axis are in the order of their owners. */
+static inline int32_t mesh_owned_before(const struct mesh *mesh, int d,
+                                        int32_t f, int32_t leaf) {
+  while (f < mesh->face_begin[d + 1] && mesh->face_owner[f] < leaf) f++;
+  return f;
+}
+
 /* Return the slope across face f < nfaces, from the difference between its
  * nodes. */
 static inline double mesh_slope(const struct mesh *mesh, int32_t f,

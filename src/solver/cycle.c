@@ -25,6 +25,7 @@ static void relax_first(struct hierarchy *h, const struct level *level,
 static void restrict_families(struct hierarchy *h, const struct level *level) {
   const int nruns = sweep_residual_runs(h->nparts);
   const int32_t *parent = h->family_parent + level->family_begin;
+  const int64_t stride = h->stride;
   for (int32_t first = 0; first < level->nfamilies; first += SWEEP_BLOCK) {
     const int32_t left = level->nfamilies - first;
     const int32_t n = left < SWEEP_BLOCK ? left : SWEEP_BLOCK;
@@ -34,9 +35,10 @@ static void restrict_families(struct hierarchy *h, const struct level *level) {
     for (int q = 0; q < nruns; q++) {
       sweep_add_residuals(h, level, q, first, n, sum);
     }
-    for (int c = 0; c < h->nparts; c++) {
+    for (int c = 0; c < count_arrays(h); c++) {
       for (int32_t k = 0; k < n; k++) {
-        h->r[c][parent[first + k] * h->stride] = sum[c][k * h->stride];
+        double *r = h->r[c] + parent[first + k] * stride;
+        for (int64_t j = 0; j < stride; j++) r[j] = sum[c][k * stride + j];
       }
     }
   }
@@ -248,19 +250,19 @@ void cycle_run(struct hierarchy *h, double factor, const double *r, double *e) {
   h->ncycles++;
   for (int c = 0; c < count_arrays(h); c++) {
     memset(h->e[c], 0, (size_t)(n + h->njumps + h->nmirrors) * each);
-    /* what others add to, and the fourth lane */
-    if (h->nranks > 1 || stride > 1) memset(h->r[c], 0, (size_t)n * each);
+    if (h->nranks > 1) memset(h->r[c], 0, (size_t)n * each); /* is added to */
   }
-  for (int c = 0; c < h->nparts; c++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      h->r[c][h->leaf_slot[i] * stride] =
-          factor * mesh_volume(mesh, i) * r[c * nleaves + i];
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int64_t at = h->leaf_slot[i] * stride;
+    const double volume = factor * mesh_volume(mesh, i);
+    for (int c = 0; c < h->nparts; c++) {
+      h->r[c][at] = volume * r[c * nleaves + i];
     }
+    if (stride > h->nparts) h->r[0][at + h->nparts] = 0;
   }
   cycle(h);
-  for (int c = 0; c < h->nparts; c++) {
-    for (int32_t i = 0; i < mesh->nleaves; i++) {
-      e[c * nleaves + i] = h->e[c][h->leaf_slot[i] * stride];
-    }
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const int64_t at = h->leaf_slot[i] * stride;
+    for (int c = 0; c < h->nparts; c++) e[c * nleaves + i] = h->e[c][at];
   }
 }
