@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "levels.h"
-#include "talus/memory.h"
 
 enum { SWEEPS_DOWN = 2, SWEEPS_UP = 2 };
 
@@ -29,7 +28,7 @@ static void restrict_families(struct hierarchy *h, const struct level *level) {
   for (int32_t first = 0; first < level->nfamilies; first += SWEEP_BLOCK) {
     const int32_t left = level->nfamilies - first;
     const int32_t n = left < SWEEP_BLOCK ? left : SWEEP_BLOCK;
-    _Alignas(MEM_ALIGNMENT) double block[NODE_ROOM * SWEEP_BLOCK] = {0};
+    double block[NODE_ROOM * SWEEP_BLOCK] = {0};
     double *sum[DIM];
     set_parts(h, block, SWEEP_BLOCK, sum);
     for (int q = 0; q < nruns; q++) {

@@ -128,8 +128,9 @@ KERNEL double pull(const struct hierarchy *h, struct run run, int32_t i, int c,
   return nparts > 1 ? sum + transposed(h, run, i, c) : sum;
 }
 
-/* Hold a node of a velocity in 3D. */
-typedef double quad __attribute__((vector_size(4 * sizeof(double)), may_alias));
+/* Hold a node of a velocity in 3D, on any place where a double may be. */
+typedef double quad
+    __attribute__((vector_size(32), aligned(sizeof(double)), may_alias));
 
 /* Set *sum to what `pull` gives of all components, without bulk viscosity. */
 KERNEL void pull_quad(const struct hierarchy *h, struct run run, int32_t i,
