@@ -8,15 +8,15 @@
  * face and nu_f the donor's nu there, with a limited slope. Newton's method in
  * q, the change of p: with R the residual of the first equation,
  *
- *   div(alpha grad q) - q/P' = R,   alpha = dt^2 nu_f m_f,
+ *   div(alpha grad q) - q/P' = R,   alpha = dt^2 m_f d(nu_f u_f)/d(u_f)
  *
  * symmetric and an M-matrix, solved by poisson_solve. Where q < 0 grains
  * expand and nu <- nu + q/P'; where q > 0 they are compressed and nu <- P^-1(p
  * + q): P is convex, so nu never crosses a pole and no damping is needed. Where
  * grains begin to touch, P' is 0 and rises with a power of p: then p grows by a
  * factor per iteration only, and P' is taken ahead (`ahead`); as R vanishes it
- * is P' of nu again. At the end nu is that of the fluxes, so that mass is kept
- * to round-off.
+ * is P' of nu again. In the end nu is taken from the fluxes, so that mass is
+ * kept to round-off.
  */
 #ifndef TALUS_GRANULAR_PRESSURE_H
 #define TALUS_GRANULAR_PRESSURE_H
@@ -86,15 +86,19 @@ struct granular_stats {
   enum solve_status status;
 };
 
-/* Find nu, p, u_f and the flux nu_f u_f at the end of dt.
+/* Find nu, p, u_f and the flux nu_f u_f at the end of dt, P(nu) = p.
  *   u_f   [nfaces_all] in: u_f*; out: with the new pressure
  *   p     [ncells] in: a guess, if by->guessed; out: P(nu), filled
- *   nu    [nleaves] likewise; out: solid fraction by the fluxes
+ *   nu    [nleaves] likewise
  *   flux  [nfaces_all] out: nu_f u_f, valid on all faces
  * Collective. */
 struct granular_stats granular_pressure_solve(
     const struct granular_pressure *by, double dt, double *u_f, double *p,
     double *nu, double *flux);
+
+/* Set nu [nleaves] to what the flux makes of nu_old over dt. */
+void granular_carry(const struct mesh *mesh, double dt, const double *nu_old,
+                    const double *flux, double *nu);
 
 /* Set limited differences of v along d over a leaf, and fill their ghosts.
  * slope [>= nleaves + nghosts]; v filled. Collective. */

@@ -117,13 +117,17 @@ static double residual(const struct granular_pressure *by, double dt,
   return mesh_max(mesh, most);
 }
 
-/* Set alpha for the present donors. */
+/* Set alpha by what a change of u_f adds to the flux: nu_f, and what the donor
+ * changes by. */
 static void set_alpha(const struct granular_pressure *by, double dt,
                       const double *u_f, const double *flux) {
+  static const double STEP = 1e-3; /* of u_f */
   const struct mesh *mesh = by->mesh;
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      const double nu = u_f[f] != 0 ? flux[f] / u_f[f] : donor(by, d, f, dt, 0);
+      const double u = u_f[f], here = donor(by, d, f, dt, u);
+      const double change = donor(by, d, f, dt, (1 + STEP) * u) - here;
+      const double nu = (u != 0 ? flux[f] / u : here) + change / STEP;
       by->alpha[f] = dt * dt * max2(nu, 0) * by->mobility_f[f];
     }
   }
@@ -194,7 +198,9 @@ static struct solve_stats newton(const struct granular_pressure *by,
 }
 
 /* Begin with nu and p of the last step unless there is a guess, and P' in mass.
- */
+ * What P depends on may have changed since p^n: where p^n is less than P(nu^n)
+ * the grains begin as loose as p^n lets them, as a change of p is the harder
+ * one to find. */
 static void begin(const struct granular_pressure *by, const double *u_f,
                   double *nu, double *p) {
   const struct mesh *mesh = by->mesh;
@@ -204,8 +210,14 @@ static void begin(const struct granular_pressure *by, const double *u_f,
     memcpy(nu, by->nu_old, (size_t)mesh->nleaves * sizeof *nu);
     memcpy(p, by->p_old, (size_t)mesh->nleaves * sizeof *p);
   }
-  for (int32_t i = 0; i < mesh->nleaves; i++)
-    m->pressure(m->context, i, nu[i], &by->mass[i]);
+  for (int32_t i = 0; i < mesh->nleaves; i++) {
+    const double P = m->pressure(m->context, i, nu[i], &by->mass[i]);
+    if (by->guessed) continue;
+    if (p[i] > 0 && P > p[i])
+      nu[i] = m->solid_fraction(m->context, i, p[i], 0, nu[i]);
+    p[i] = m->pressure(m->context, i, nu[i], &by->mass[i]);
+  }
+  mesh_touch(mesh, p);
   for (int d = 0; d < DIM; d++)
     granular_slopes(mesh, d, by->nu_old, by->slope[d]);
 }
@@ -213,7 +225,6 @@ static void begin(const struct granular_pressure *by, const double *u_f,
 struct granular_stats granular_pressure_solve(
     const struct granular_pressure *by, double dt, double *u_f, double *p,
     double *nu, double *flux) {
-  const struct mesh *mesh = by->mesh;
   struct granular_stats stats = {.status = SOLVE_STALLED};
   begin(by, u_f, nu, p);
   for (;; stats.newton++) {
@@ -230,8 +241,11 @@ struct granular_stats granular_pressure_solve(
     if (linear.iterations > stats.most_iterations)
       stats.most_iterations = linear.iterations;
   }
-  for (int32_t i = 0; i < mesh->nleaves; i++) {
-    nu[i] = by->nu_old[i] - dt * mesh_divergence(mesh, flux, i);
-  }
   return stats;
+}
+
+void granular_carry(const struct mesh *mesh, double dt, const double *nu_old,
+                    const double *flux, double *nu) {
+  for (int32_t i = 0; i < mesh->nleaves; i++)
+    nu[i] = nu_old[i] - dt * mesh_divergence(mesh, flux, i);
 }

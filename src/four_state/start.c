@@ -123,6 +123,7 @@ static double settle_once(struct four_state *sim, int axis, double dt) {
   const struct granular_stats stats =
       granular_pressure_solve(&by, dt, sim->u_f->v, p, nu, sim->flux->v);
   scratch_give(&sim->scratch, "settle");
+  granular_carry(mesh, dt, sim->nu->v, sim->flux->v, nu);
   if (!(stats.residual <= ROUGHLY)) most = INFINITY;
   for (int32_t i = 0; i < mesh->nleaves; i++)
     most = max2(most, fabs(nu[i] - sim->nu->v[i]));

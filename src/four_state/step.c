@@ -122,6 +122,7 @@ static void press(struct four_state *sim, double dt, double *a_f,
   sim->pressure =
       granular_pressure_solve(&by, dt, u_f, p, nu_new, sim->flux->v);
   scratch_give(&sim->scratch, "pressure");
+  granular_carry(mesh, dt, sim->nu->v, sim->flux->v, nu_new);
   scratch_take(&sim->scratch, FIELD_CELL, "accelerations", 2 * DIM, a);
   four_state_face_acceleration(sim, sim->p->v, a_f);
   four_state_acceleration(sim, a_f, a + DIM);

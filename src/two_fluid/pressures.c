@@ -15,9 +15,9 @@
 #include "talus/two_fluid_pair.h"
 
 enum { MOST_NEWTON = 40 };
-/* R of granular_pressure.h is bounded by this times solver.tolerance_pressure.
- */
-#define PRESSURE_FACTOR 1e-4
+/* R of granular_pressure.h is bounded by this times solver.tolerance_pressure
+ * in the last pass, in the first one by that. */
+#define PRESSURE_FACTOR 1e-3
 /* Slope of P where there is no pressure, Pa. */
 #define LEAST_SLOPE 1e-3
 /* Both pressures are found again while j changes by more than this times
@@ -268,7 +268,8 @@ static void start_grains(struct two_fluid *sim, double dt, double *u_f) {
 }
 
 /* Find p_s, alpha at the end of the step and the flux, for the present j; those
- * of the last pass are the guess. */
+ * of the last pass are the guess. j of the first pass changes, so that p_s need
+ * not be better. */
 static void press(struct two_fluid *sim, double dt, double *p_s) {
   double *u_f = scratch_take_one(&sim->scratch, FIELD_FACE, __func__);
   start_grains(sim, dt, u_f);
@@ -276,6 +277,7 @@ static void press(struct two_fluid *sim, double dt, double *p_s) {
   struct granular_pressure by = two_fluid_material(sim, "pressure");
   if (sim->keys->surface == TWO_FLUID_PLANES) by.surface = &surface;
   by.guessed = sim->passes > 0;
+  if (!by.guessed) by.tolerance = sim->params->tolerance_pressure;
   const int newton = sim->pressure.newton;
   const int iterations = sim->pressure.iterations;
   sim->pressure = granular_pressure_solve(&by, dt, u_f, p_s, sim->alpha_new->v,
@@ -404,18 +406,20 @@ static void accelerate_along(struct two_fluid *sim, double dt, int e) {
 void two_fluid_pressures(struct two_fluid *sim, double dt) {
   const struct mesh *mesh = sim->grid.mesh;
   const double enough = PASS_SLACK * sim->params->tolerance_pressure;
+  const double fits = PRESSURE_FACTOR * sim->params->tolerance_pressure;
   double *kept[2], *before;
   scratch_take(&sim->scratch, FIELD_CELL, __func__, 2, kept);
   before = scratch_take_one(&sim->scratch, FIELD_FACE, "flux of before");
   double *p_s = kept[0], *old = kept[1], change = INFINITY;
   memcpy(old, sim->p_s->v, (size_t)mesh->ncells * sizeof *old);
   memcpy(sim->load->v, sim->p_s->v, (size_t)mesh->nleaves * sizeof *old);
-  sim->pressure = (struct granular_stats){0};
+  sim->pressure = (struct granular_stats){.residual = INFINITY};
   sim->projection = (struct solve_stats){0};
   set_means(sim);
   if (sim->exact) hold_still(sim, dt);
   field_fill_faces(mesh, sim->j);
-  for (sim->passes = 0; sim->passes < MOST_PASSES && change > enough;
+  for (sim->passes = 0; sim->passes < MOST_PASSES &&
+                        (change > enough || sim->pressure.residual > fits);
        sim->passes++) {
     memcpy(before, sim->j->v, (size_t)mesh->nfaces_all * sizeof *before);
     if (sim->passes > 0)
@@ -425,6 +429,7 @@ void two_fluid_pressures(struct two_fluid *sim, double dt) {
     project(sim, dt), two_fluid_lap(sim, TWO_FLUID_PROJECTION);
     change = change_of(sim, dt, before);
   }
+  granular_carry(mesh, dt, sim->alpha->v, sim->flux->v, sim->alpha_new->v);
   scratch_give(&sim->scratch, __func__);
   scratch_give(&sim->scratch, "flux of before");
   for (int k = 0; k < TWO_FLUID_NPHASES; k++)
