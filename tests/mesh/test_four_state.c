@@ -6,6 +6,7 @@
 
 #include "grid.h"
 #include "narrow.h"
+#include "ranks.h"
 #include "stale.h"
 #include "talus/four_state/properties.h"
 #include "talus/four_state/temperature.h"
@@ -94,7 +95,7 @@ START_TEST(a_heap_rests) {
   p.shape = (struct function){slope, &height};
   p.tolerance_pressure = p.tolerance_viscous = 1e-5;
   struct four_state *sim = beads_new(&p);
-  const bool done = beads_run(sim, 0.1, 1000);
+  const bool done = beads_run(sim, end_of_run(0.1, 0.05), 1000);
   four_state_measure(sim, &m);
   outline_free(&m.outline);
   four_state_destroy(sim);
@@ -194,7 +195,7 @@ START_TEST(a_layer_falls_and_lands) {
   four_state_measure(sim, &falling);
   double most = 0, gain = 0, open = 0;
   int newton = 0;
-  for (int k = 0; k < 260 && done; k++) {
+  for (int k = 0; k < end_of_run(260, 130) && done; k++) {
     done = beads_run(sim, 1, 1);
     newton = newton > sim->pressure.newton ? newton : sim->pressure.newton;
     four_state_measure(sim, &m);
@@ -453,7 +454,7 @@ START_TEST(grains_in_rings_keep_their_mass) {
   p.shape = (struct function){ball, NULL};
   struct four_state *sim = beads_new(&p);
   four_state_measure(sim, &before);
-  const bool done = beads_run(sim, 0.15, 1000);
+  const bool done = beads_run(sim, end_of_run(0.15, 0.05), 1000);
   four_state_measure(sim, &after);
   outline_free(&before.outline), outline_free(&after.outline);
   four_state_destroy(sim);
@@ -470,14 +471,13 @@ END_TEST
 START_TEST(a_step_reads_no_stale_nodes) {
   double height = 0.13;
   struct four_state_keys keys = four_state_defaults();
-  keys.regularisation = _i;
+  keys.regularisation = _i, keys.start = FOUR_STATE_UNIFORM;
   struct params p = with_levels(box(&keys), 1);
   p.shape = (struct function){slope, &height};
   struct four_state *sim[2];
   bool done = true;
   for (int k = 0; k < 2; k++) {
     sim[k] = beads_new(&p);
-    done = done && beads_run(sim[k], 1, 2);
     stale_set(&sim[k]->grid.fields, sim[k]->grid.mesh, k);
     done = done && beads_run(sim[k], 1, 1);
   }

@@ -11,6 +11,7 @@
 
 #include <check.h>
 
+#include "ranks.h"
 #include "sim.h"
 #include "transport.h"
 
@@ -64,7 +65,8 @@ static bool run_to(struct two_phase *sim, double stop, double dt) {
 
 /* Twice as much friction as weight, and half as much. */
 START_TEST(a_plug_is_slowed_at_the_right_rate) {
-  const double friction = _i ? 0.5 : 2, weight = sin(SLOPE), stop = 1;
+  const double friction = _i ? 0.5 : 2, weight = sin(SLOPE);
+  const double stop = end_of_run(1, 0.25);
   struct params params = plug_params(friction, true);
   struct two_phase *sim = sim_start(&params);
   double spread;
@@ -115,7 +117,7 @@ START_TEST(a_plug_at_rest_yields_at_its_friction) {
   struct two_phase *sim = sim_start(&params);
   double spread, most = 0;
   bool done = run_to(sim, DT, DT);
-  while (done && sim->model.time < 1) {
+  while (done && sim->model.time < end_of_run(1, 0.25)) {
     done = step_advance(sim, DT) == EXIT_DONE;
     most = larger(most, fabs(plug_speed(sim, &spread)));
   }
