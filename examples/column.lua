@@ -72,6 +72,8 @@ local cfl = param("cfl", 0.7, "bound on sum |u_f| A dt/(2 V), the time step")
 local times = param("times", {0.66, 0.95, 1.24, 1.52, 2.28},
                     "times of the outlines, in sqrt(H0/g)")
 local every = param("every", 0.1, "time between snapshots, in sqrt(L0/g)")
+local front_height = param("front_height", 0, "of the heap where its front " ..
+                           "is, in L0; 0: half the finest cell")
 local rest = param("rest", 0, "speed, in sqrt(g H0), at which grains are at " ..
                               "rest and the run ends; 0: it goes on to stop")
 param("reference", a == 6.26 and "reference/contact_dynamics_a6.26.csv" or "",
@@ -126,6 +128,7 @@ return {
                                   time = 0.2 * math.sqrt(a / g) } or nil,
     profile_times = profile_times,
     snapshot_every = every,
+    front_height = front_height,
   },
 
   expect = {

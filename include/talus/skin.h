@@ -46,8 +46,9 @@ struct skin_leaf {
 };
 
 struct skin {
-  bool grains_only; /* w_k = c c_k of both ends of line k, no stress is left
-                       out: what grains do depends on grains alone */
+  bool grains_only; /* w_k = (c c_k)^2 of both ends of line k, no stress is left
+                       out: what grains do depends on grains alone, and traces
+                       of them that a gas carries have nothing to say */
   double slight;    /* multigrid cycles leave out what is less than this part
                        of the diagonal; 0: nothing */
   int32_t n, room;
@@ -61,7 +62,8 @@ struct skin {
  * of grains is `grains`, from a node with the part `near` to one with `far`. */
 static inline double skin_weight(bool grains_only, double grains, double near,
                                  double far) {
-  return grains_only ? near * far : 1 - grains * (1 - far);
+  const double both = near * far;
+  return grains_only ? both * both : 1 - grains * (1 - far);
 }
 
 /* Make a skin, owned by the caller. NULL is a skin without faces. */

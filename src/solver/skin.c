@@ -47,8 +47,7 @@ static bool weigh_lines(const struct mesh *mesh, int d, int32_t f, int t,
   face_places(mesh, d, f, place);
   for (int k = 0; k < 4; k++) {
     const int end = place[k / 2] + (k & 1 ? 1 : -1) * stencil_step(t);
-    weight[k] =
-        grains_only ? m[place[k / 2]] * m[end] : 1 - grains * (1 - m[end]);
+    weight[k] = skin_weight(grains_only, grains, m[place[k / 2]], m[end]);
     sum += weight[k];
     least = min2(least, weight[k]);
   }

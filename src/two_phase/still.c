@@ -13,6 +13,9 @@
 #define SLOW 0.1
 /* Leaves with more grains than this are asked for their speed. */
 #define HOLDS_GRAINS 0.01
+/* Sides with less than this part of the yield stress of a leaf do not decide
+ * whether it is held: a film touches what is beside it by 1e-5 of a side. */
+#define WEAK 0.01
 
 /* Return that part, or under a light gas that in which grains weigh as much as
  * the gas: a leaf with fewer than HOLDS_GRAINS fell on a toe for ever. */
@@ -79,16 +82,16 @@ static void find_mean(struct two_phase *sim,
   scratch_give(&sim->scratch, __func__);
 }
 
-/* Set held [nfaces_all] to 1 on faces that can yield and do not, wet to 1 on
- * all that can, else to 0. */
-static void find_held(const struct two_phase *sim, double *wet, double *held) {
+/* Set held [nfaces_all] to tau_y on faces that do not yield, else to 0, and
+ * tau [nfaces_all] to tau_y. */
+static void find_held(const struct two_phase *sim, double *tau, double *held) {
   const struct mesh *mesh = sim->grid.mesh;
   const struct yield *yield = &sim->yield;
-  double *face[] = {wet, held};
+  double *face[] = {tau, held};
   for (int d = 0; d < DIM; d++) {
     for (int32_t f = mesh->face_begin[d]; f < mesh->face_begin[d + 1]; f++) {
-      wet[f] = yield->tau_y->v[f] > 0;
-      held[f] = wet[f] > 0 && !yield_is_reached(yield, d, f);
+      tau[f] = yield->tau_y->v[f];
+      held[f] = yield_is_reached(yield, d, f) ? 0 : tau[f];
     }
   }
   mesh_fill_faces(mesh, 2, face);
@@ -108,9 +111,9 @@ void still_keep(struct two_phase *sim, double dt, double *const g[DIM]) {
   /* a single phase has not renewed g for the load of this step */
   const bool renewed = !sim->params->single_phase;
   for (int32_t i = 0; i < mesh->nleaves; i++) {
-    const double wet = mesh_mean(mesh, face[0], i);
+    const double tau = mesh_mean(mesh, face[0], i);
     const double held = mesh_mean(mesh, face[1], i);
-    if (!renewed || wet == 0 || held != wet) continue;
+    if (!renewed || tau == 0 || held < (1 - WEAK) * tau) continue;
     for (int e = 0; e < DIM; e++) {
       sim->u[e]->v[i] +=
           sim->yield.still->v[i] * dt * (g[e][i] - sim->g[e]->v[i]);

@@ -26,7 +26,8 @@ REFERENCE = "contact_dynamics_a6.26.csv"
 def collapse(study, a, cells, times, stop=12, grains=GRAINS, **physics):
     """The run of a column, to its rest or the time `stop`."""
     reach = 1.3 * (1 + (2.4 * a if a < BREAK else 3.9 * a ** 0.7))
-    output = {"d": math.sqrt(a / grains), "eta_min": 0,
+    d = math.sqrt(a / grains)
+    output = {"d": d, "eta_min": 0, "front_height": d / 2,
               "regularisation": "exact", "every": 0, "rest": 1e-3,
               "stop": stop * math.sqrt(a),
               "times": ",".join(map(str, times))}
