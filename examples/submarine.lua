@@ -29,10 +29,10 @@
 --
 -- Expect. The loose front is at 15.1 cm after 0.64 s, at 19.1 cm after 1.9 s and at
 -- 20.7 cm from 5.5 s on, where it stands; in the experiment at 16.3, 20.3 and 21.2 cm.
--- The dense column on leaves of 5 mm (level=3) is at 7.4 cm after 2 s and at 10.8 cm
+-- The dense column on leaves of 5 mm (level=3) is at 7.5 cm after 2 s and at 10.9 cm
 -- after 10 s, where it rests; in the experiment at 9.3 and 12.1 cm. The liquid at the
 -- floor is pressed by +144 Pa in the loose bed at 2 s, here by 122 Pa, and by -126 Pa
--- in the dense one at 1.13 s, here by -194 Pa (docs/notes/two_fluid.md).
+-- in the dense one at 1.13 s, here by -193 Pa (docs/notes/two_fluid.md).
 --
 -- Try. dense=1 stop=30; alpha=0.57; closures of other codes: closure="ktgf".
 
