@@ -156,7 +156,9 @@ static void report_suspension(struct report *report, double J) {
   two_fluid_destroy(sim);
 }
 
-/* Return the error of u at 25 degrees over that of the surface. */
+/* Return the error of u at 25 degrees over that of the surface. With tolerances
+ * of 1e-6 what solves leave lets alpha seep, and u is off by 0.1 % on any grid.
+ */
 static double incline(int n) {
   const double H = 4.9e-3, g = 9.81, eta = 0.096, pi = acos(-1);
   const double slope = 25 * pi / 180, J = 0.0015073;
@@ -167,7 +169,7 @@ static double incline(int n) {
   keys.alpha_start = phi;
   struct params p = column(&keys, H, n);
   p.grains.density = 2500;
-  p.tolerance_pressure = p.tolerance_viscous = 1e-6;
+  p.tolerance_pressure = p.tolerance_viscous = 1e-9;
   p.gravity[0] = g * sin(slope), p.gravity[1] = -g * cos(slope);
   struct two_fluid *sim = grains_new(&p);
   const bool good = grains_run(sim, 60, 100000);
