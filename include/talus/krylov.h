@@ -31,7 +31,7 @@
 
 #include "talus/solve.h"
 
-enum { KRYLOV_DIRECTIONS = 16, KRYLOV_PATIENCE = 12, KRYLOV_PARTS = 3 };
+enum { KRYLOV_DIRECTIONS = 32, KRYLOV_PATIENCE = 12, KRYLOV_PARTS = 3 };
 
 /* A system of `nparts` arrays of `n` numbers each, as GCR sees it
  * (parts are the components of a vector; they follow one another, so vectors
