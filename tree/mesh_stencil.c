@@ -323,8 +323,8 @@ static void set_plans(struct mesh *mesh, const int32_t *average,
   }
 }
 
-/* Parts along each axis of the keys of a cell and those around it, which are
- * their sum; false if some are in another tree or outside. */
+/* Find the parts along each axis of the keys of a cell and those around it,
+ * which are their sum; returns false if some are in another tree or outside. */
 static bool find_parts(uint64_t key, int level, uint64_t part[DIM][3]) {
   const uint64_t tree = key & ~(morton_span(0) - 1);
   bool inside = true;

@@ -83,7 +83,7 @@ struct four_state_numbers four_state_numbers(
 double four_state_contact_viscosity(const struct four_state_closure *closure,
                                     double p_E, double gamma);
 
-/* How grains are deformed. */
+/* Describe how grains are deformed, and how much that may heat them. */
 struct four_state_rates {
   double DD;   /* D:D, 1/s^2 */
   double div;  /* div u, 1/s */

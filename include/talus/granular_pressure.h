@@ -15,8 +15,8 @@
  * + q): P is convex, so nu never crosses a pole and no damping is needed. Where
  * grains begin to touch, P' is 0 and rises with a power of p: then p grows by a
  * factor per iteration only, and P' is taken ahead (`ahead`); as R vanishes it
- * is P' of nu again. In the end nu is taken from the fluxes, so that mass is
- * kept to round-off.
+ * is P' of nu again. After the last solve of a step granular_carry takes nu
+ * from the fluxes, so that mass is kept to round-off.
  */
 #ifndef TALUS_GRANULAR_PRESSURE_H
 #define TALUS_GRANULAR_PRESSURE_H
@@ -89,7 +89,7 @@ struct granular_stats {
 /* Find nu, p, u_f and the flux nu_f u_f at the end of dt, P(nu) = p.
  *   u_f   [nfaces_all] in: u_f*; out: with the new pressure
  *   p     [ncells] in: a guess, if by->guessed; out: P(nu), filled
- *   nu    [nleaves] likewise
+ *   nu    [nleaves] in: a guess likewise; out: that of p
  *   flux  [nfaces_all] out: nu_f u_f, valid on all faces
  * Collective. */
 struct granular_stats granular_pressure_solve(

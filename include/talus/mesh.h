@@ -257,16 +257,36 @@ static inline double mesh_mean(const struct mesh *mesh, const double *v,
   return sum / NFACE;
 }
 
-/* Loops over faces read the stencils of their owners. In pieces of so many
- * leaves these are still in cache when the next axis wants them. */
-enum { MESH_PIECE = 256 };
+/* Faces begin[d] to end[d] of each axis whose owners are in one piece of the
+ * leaves. Loops over faces read the stencils of their owners, which in small
+ * pieces are still in cache when the next axis wants them. */
+struct mesh_piece {
+  int32_t leaf; /* behind its last one */
+  int32_t begin[DIM], end[DIM];
+};
+enum { MESH_PIECE_LEAVES = 256 };
 
-/* Return the end of the faces of axis d from f on whose owners come before a
- * leaf: those of an axis are in the order of their owners. */
-static inline int32_t mesh_owned_before(const struct mesh *mesh, int d,
-                                        int32_t f, int32_t leaf) {
-  while (f < mesh->face_begin[d + 1] && mesh->face_owner[f] < leaf) f++;
-  return f;
+/* Return an empty piece before the first one. */
+static inline struct mesh_piece mesh_no_piece(const struct mesh *mesh) {
+  struct mesh_piece piece = {.leaf = 0};
+  for (int d = 0; d < DIM; d++) piece.end[d] = mesh->face_begin[d];
+  return piece;
+}
+
+/* Go on to the next piece; returns false behind the last one. */
+static inline bool mesh_next_piece(const struct mesh *mesh,
+                                   struct mesh_piece *piece) {
+  if (piece->leaf >= mesh->nleaves) return false;
+  piece->leaf += MESH_PIECE_LEAVES;
+  for (int d = 0; d < DIM; d++) {
+    int32_t f = piece->begin[d] = piece->end[d];
+    /* faces of an axis are in the order of their owners */
+    while (f < mesh->face_begin[d + 1] && mesh->face_owner[f] < piece->leaf) {
+      f++;
+    }
+    piece->end[d] = f;
+  }
+  return true;
 }
 
 /* Return the slope across face f < nfaces, from the difference between its

@@ -50,12 +50,11 @@ struct two_fluid_frozen {
 double two_fluid_shear(const struct two_fluid_closure *c, double gamma,
                        double eta_f);
 /* Return X after dt of shear where it was `before`: it builds up at the rate
- * relax phi gamma, but for the viscous part of rauter, which is there at once.
- * So p_s and the stress, which is as p_s, do not chase each other
+ * relax phi gamma, but for the viscous part of rauter, which is there at once,
+ * so that p_s and the stress, which is as p_s, do not chase each other
  * [montella_2021]; nor p_s, which grows as gamma^2 by inertia, and gamma, which
  * p_s drives where phi is near phi_m: grains burst. It falls at once: grains at
- * rest keep none.
- */
+ * rest keep none. */
 double two_fluid_relaxed_shear(const struct two_fluid_closure *c, double before,
                                double gamma, double eta_f, double phi,
                                double dt);

@@ -198,9 +198,9 @@ static struct solve_stats newton(const struct granular_pressure *by,
 }
 
 /* Begin with nu and p of the last step unless there is a guess, and P' in mass.
- * What P depends on may have changed since p^n: where p^n is less than P(nu^n)
- * the grains begin as loose as p^n lets them, as a change of p is the harder
- * one to find. */
+ * Where p^n is less than P(nu^n), because shear has changed P since, begin as
+ * loose as p^n lets grains be: a change of p is harder to find than one of nu.
+ */
 static void begin(const struct granular_pressure *by, const double *u_f,
                   double *nu, double *p) {
   const struct mesh *mesh = by->mesh;

@@ -260,7 +260,7 @@ static void allocate(struct hierarchy *h) {
   h->beyond = mem_alloc((size_t)h->nlevels, sizeof *h->beyond);
   h->apart_room = most_apart(h);
   h->arena = MEM_NEW(double, arena_length(h));
-  h->inverse[0] = MEM_NEW(double, NODE_ROOM *(int64_t)h->nslots);
+  h->inverse[0] = MEM_NEW(double, (int64_t)NODE_ROOM * h->nslots);
   h->e[0] = h->arena;
   h->r[0] = h->e[0] + NODE_ROOM * nvalues(h);
   h->apart = h->r[0] + NODE_ROOM * (int64_t)h->nslots;

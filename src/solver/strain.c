@@ -69,19 +69,15 @@ static void add_hoop_squared(const struct mesh *mesh, double *const u[DIM],
 
 void strain_shear_rate(const struct mesh *mesh, const struct skin *skin,
                        double *const u[DIM], double *shear_f) {
-  int32_t next[DIM];
-  for (int d = 0; d < DIM; d++) next[d] = mesh->face_begin[d];
-  for (int32_t leaf = 0; leaf < mesh->nleaves; leaf += MESH_PIECE) {
+  struct mesh_piece piece = mesh_no_piece(mesh);
+  while (mesh_next_piece(mesh, &piece)) {
 #pragma GCC unroll 3 /* so that d is known in the loop over faces */
     for (int d = 0; d < DIM; d++) {
-      const int32_t end =
-          mesh_owned_before(mesh, d, next[d], leaf + MESH_PIECE);
-      for (int32_t f = next[d]; f < end; f++) {
+      for (int32_t f = piece.begin[d]; f < piece.end[d]; f++) {
         double grad[DIM][DIM];
         face_gradient(mesh, d, f, u, grad);
         shear_f[f] = shear_squared(grad);
       }
-      next[d] = end;
     }
   }
   if (skin) skin_shear_squared(mesh, skin, u, shear_f);
@@ -133,21 +129,17 @@ static void skin_gradient(const struct mesh *mesh, const struct skin_face *face,
 void strain_find(const struct mesh *mesh, const struct skin *skin,
                  double *const u[DIM], double *const rows[STRAIN_ROWS]) {
   double grad[DIM][DIM];
-  int32_t next[DIM];
-  for (int d = 0; d < DIM; d++) next[d] = mesh->face_begin[d];
-  for (int32_t leaf = 0; leaf < mesh->nleaves; leaf += MESH_PIECE) {
+  struct mesh_piece piece = mesh_no_piece(mesh);
+  while (mesh_next_piece(mesh, &piece)) {
 #pragma GCC unroll 3 /* so that d is known in the loop over faces */
     for (int d = 0; d < DIM; d++) {
-      const int32_t end =
-          mesh_owned_before(mesh, d, next[d], leaf + MESH_PIECE);
-      for (int32_t f = next[d]; f < end; f++) {
+      for (int32_t f = piece.begin[d]; f < piece.end[d]; f++) {
         face_gradient(mesh, d, f, u, grad);
         set_rows(grad, d, f, rows);
         if (mesh_is_axisymmetric(mesh)) {
           rows[STRAIN_HOOP][f] = mesh_face_hoop(mesh, u[0], f, d);
         }
       }
-      next[d] = end;
     }
   }
   for (int32_t k = 0; skin && k < skin->n; k++) {

@@ -57,7 +57,7 @@ KERNEL int32_t diagonal(const struct hierarchy *h, struct run run, int32_t i,
              : h->corner[corner_entry(a, upper_a, b, upper_b)][i];
 }
 
-/* Place of a value in the array of its component. */
+/* Return the place of a value in the array of its component. */
 KERNEL int64_t place(int32_t i, int nparts) {
   return (int64_t)i * (nparts > 1 ? LANES : 1);
 }
@@ -248,7 +248,7 @@ void sweep_relax(struct hierarchy *h, const struct level *level, int first,
     }
   }
   if (h->nparts == 1 || end == first + 1) return;
-  const int64_t n = (end - 1 - first) * level->nfamilies * h->stride;
+  const int64_t n = h->stride * (end - 1 - first) * level->nfamilies;
   for (int c = 0; c < count_arrays(h); c++) {
     memcpy(h->e[c] + run_begin(level, first) * h->stride,
            h->apart + c * h->apart_room, (size_t)n * sizeof(double));

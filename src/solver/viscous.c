@@ -111,19 +111,16 @@ static void stress(const struct mesh *mesh, const struct viscosity *viscosity,
   const double *eta_f = viscosity->eta_f, *kappa_f = viscosity->kappa_f;
   const struct skin *skin = viscosity->skin;
   const bool rings = mesh_is_axisymmetric(mesh);
-  int32_t next[DIM];
-  for (int d = 0; d < DIM; d++) next[d] = mesh->face_begin[d];
-  for (int32_t leaf = 0; leaf < mesh->nleaves; leaf += MESH_PIECE) {
+  struct mesh_piece piece = mesh_no_piece(mesh);
+  while (mesh_next_piece(mesh, &piece)) {
 #pragma GCC unroll 3 /* so that d is known in the loops over faces */
     for (int d = 0; d < DIM; d++) {
-      const int32_t begin = next[d];
-      const int32_t end = mesh_owned_before(mesh, d, begin, leaf + MESH_PIECE);
+      const int32_t begin = piece.begin[d], end = piece.end[d];
       for (int32_t f = begin; f < end && !kappa_f; f++)
         face_stress(mesh, eta_f, NULL, u, tau, NULL, f, d);
       for (int32_t f = begin; f < end && kappa_f; f++)
         face_stress(mesh, eta_f, kappa_f, u, tau, rings ? tau[HOOP] : NULL, f,
                     d);
-      next[d] = end;
     }
   }
   if (skin) skin_stress(mesh, eta_f, skin, u, tau);

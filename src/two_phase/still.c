@@ -11,12 +11,11 @@
 
 /* Still grains are slower than this part of what gravity gives in a step. */
 #define SLOW 0.1
-/* Leaves with more grains than this are asked for their speed. */
-#define HOLDS_GRAINS 0.01
 /* Sides with less than this part of the yield stress of a leaf do not decide
  * whether it is held: a film touches what is beside it by 1e-5 of a side. */
 #define WEAK 0.01
-
+/* Leaves with more grains than this are asked for their speed. */
+#define HOLDS_GRAINS 0.01
 /* Return that part, or under a light gas that in which grains weigh as much as
  * the gas: a leaf with fewer than HOLDS_GRAINS fell on a toe for ever. */
 static double least_grains(const struct two_phase *sim) {

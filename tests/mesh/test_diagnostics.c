@@ -261,6 +261,27 @@ START_TEST(the_vertical_is_the_axis_of_gravity) {
 }
 END_TEST
 
+/* A heap whose outline falls within a column of leaves ends as high as the key
+ * front_height asks, or half a leaf. */
+START_TEST(the_front_is_as_high_as_asked) {
+  double front[2];
+  for (int k = 0; k < 2; k++) {
+    struct diagnostics diagnostics;
+    struct params p = box_params(4);
+    p.shape = (struct function){column, NULL};
+    p.front_height = k ? 0.3 : 0;
+    struct two_phase *sim = sim_start(&p);
+    diagnostics_measure(sim, &diagnostics);
+    front[k] = diagnostics.front;
+    ck_assert_double_eq(front[k],
+                        outline_front(&diagnostics.outline, p.front_height));
+    diagnostics_free(&diagnostics);
+    two_phase_destroy(sim);
+  }
+  ck_assert_double_lt(front[1], front[0]);
+}
+END_TEST
+
 /* Sums */
 
 /* Make a state with no more than diagnostics read; the fields are zero. */
@@ -495,6 +516,7 @@ Suite *diagnostics_suite(void) {
   tcase_add_test(tcase, a_heap_on_the_upper_wall_is_walked_downwards);
   tcase_add_loop_test(tcase, a_layer_thinner_than_a_cell_has_a_front, 0, 2);
   tcase_add_test(tcase, columns_add_up_to_the_volume);
+  tcase_add_test(tcase, the_front_is_as_high_as_asked);
   tcase_add_test(tcase, the_vertical_is_the_axis_of_gravity);
   suite_add_tcase(suite, tcase);
   tcase = tcase_create("sums");

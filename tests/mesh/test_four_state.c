@@ -489,6 +489,25 @@ START_TEST(a_step_reads_no_stale_nodes) {
 }
 END_TEST
 
+/* Grains end as high as the key front_height asks, or half a grain. */
+START_TEST(the_front_is_as_high_as_asked) {
+  double front[2], height = 0.05;
+  struct four_state_keys keys = four_state_defaults();
+  for (int k = 0; k < 2; k++) {
+    struct four_state_measures m;
+    struct params p = box(&keys);
+    p.shape = (struct function){slope, &height};
+    p.front_height = k ? 0.02 : 0;
+    struct four_state *sim = beads_new(&p);
+    four_state_measure(sim, &m);
+    front[k] = m.grain_front;
+    outline_free(&m.outline);
+    four_state_destroy(sim);
+  }
+  ck_assert_double_lt(front[1], front[0]);
+}
+END_TEST
+
 /* Measures fill the nodes that the contour is read from: what a step or a start
  * has left there says nothing. A cliff across levels ends within a leaf. */
 START_TEST(measures_read_no_stale_nodes) {
@@ -526,6 +545,7 @@ Suite *four_state_suite(void) {
   /* in 3D leaves are so coarse that some grains reach the floor at once */
   tcase_add_test(flow, collisions_carry_grains_above_a_wall);
   tcase_add_loop_test(flow, a_layer_falls_and_lands, 0, 1);
+  tcase_add_test(flow, the_front_is_as_high_as_asked);
   tcase_add_test(flow, measures_read_no_stale_nodes);
   tcase_add_loop_test(flow, a_step_reads_no_stale_nodes, 0, 2);
   tcase_add_loop_test(flow, plane_shear_heats_as_a_tanh, 0, 2);

@@ -110,6 +110,24 @@ START_TEST(grains_that_turn_feel_no_gas) {
 }
 END_TEST
 
+/* Lines into traces that the gas carries count by their square, 1e-12. */
+START_TEST(grains_that_turn_feel_no_traces) {
+  static const struct bc neumann[MESH_MAX_PATCHES];
+  const struct bc *bc[] = {neumann};
+  double a[DIM][DIM] = {{0}};
+  a[0][1] = 1, a[1][0] = -1;
+  struct block *b = block_new(4, 0.5, a);
+  for (int32_t i = 0; i < b->mesh->nleaves; i++) {
+    if (b->c[i] == 0) b->c[i] = 1e-6;
+  }
+  mesh_fill(b->mesh, 1, &b->c, bc, false);
+  b->skin->grains_only = true;
+  skin_find(b->mesh, b->c, 1, b->skin);
+  ck_assert_double_le(shear_error(b, b->skin, 0), 1e-10);
+  block_destroy(b);
+}
+END_TEST
+
 START_TEST(shear_rate_of_grains_is_exact_up_to_the_surface) {
   double a[DIM][DIM] = {{0}}, squared = 0;
   for (int d = 0; d < DIM; d++) {
@@ -219,6 +237,7 @@ Suite *skin_suite(void) {
   Suite *suite = suite_create("skin");
   TCase *t = tcase_create("skin");
   tcase_add_test(t, grains_that_turn_feel_no_gas);
+  tcase_add_test(t, grains_that_turn_feel_no_traces);
   tcase_add_test(t, shear_rate_of_grains_is_exact_up_to_the_surface);
   tcase_add_test(t, skin_lies_between_grains);
   tcase_add_test(t, film_of_one_cell_does_not_bend);

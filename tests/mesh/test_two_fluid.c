@@ -254,6 +254,26 @@ static double cliff(void *context, const double x[3]) {
   return 0.2 - x[0] - x[DIM - 1];
 }
 
+/* Grains end as high as the key front_height asks, or half a grain. */
+START_TEST(the_front_is_as_high_as_asked) {
+  double front[2];
+  struct two_fluid_keys keys =
+      grains_keys(TWO_FLUID_CRITICAL_STATE, TWO_FLUID_WATER);
+  for (int k = 0; k < 2; k++) {
+    struct two_fluid_measures m;
+    struct params p = grains_params(&keys, 0.16, LEVEL);
+    p.shape = (struct function){cliff, NULL};
+    p.front_height = k ? 0.05 : 0;
+    struct two_fluid *sim = grains_new(&p);
+    two_fluid_measure(sim, &m);
+    front[k] = m.grain_front;
+    outline_free(&m.outline);
+    two_fluid_destroy(sim);
+  }
+  ck_assert_double_lt(front[1], front[0]);
+}
+END_TEST
+
 /* A step of a cliff that slides, across levels and in most of the box, so that
  * ranks meet in it, fills the nodes that it reads: whatever they were, it ends
  * the same. */
@@ -290,6 +310,7 @@ Suite *two_fluid_suite(void) {
   tcase_add_test(alone, a_bed_falls_and_lands);
   tcase_add_test(flow, grains_carry_tracers);
   tcase_add_test(flow, walls_are_the_sides_of_the_box);
+  tcase_add_test(flow, the_front_is_as_high_as_asked);
   tcase_add_loop_test(flow, a_step_reads_no_stale_nodes, 0, DIM == 2 ? 2 : 1);
   if (DIM == 3) tcase_add_loop_test(alone, horizontal_axes_are_alike, 0, 1);
   if (DIM == 3) tcase_add_loop_test(flow, horizontal_axes_are_alike, 1, 2);

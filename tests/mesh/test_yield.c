@@ -177,9 +177,8 @@ static double cone(void *context, const double x[3]) {
   return 0.3 - 0.176 * hypot(x[0], x[1]) - x[UP];
 }
 
-/* The surface of a cone is askew: beside it lie traces of grains that the gas
- * carries, and leaves whose sides wet by 1e-5 yield. Its grains have 5e-10;
- * 2e-8 while both had a say. */
+/* The surface of a cone is askew: full leaves beside it have sides wet by 1e-5,
+ * which yield. Its grains have 1.3e-10; 2e-8 while such a side freed a leaf. */
 START_TEST(a_cone_rests_under_gas) {
   struct params p = heap_params(false);
   p.boundary[3].type = BOUNDARY_NO_SLIP;

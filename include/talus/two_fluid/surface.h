@@ -51,8 +51,8 @@
  * surface was twice as steep or more. With W the sum over both leaves of a
  * column is (c_0 + c_1)^2/2 of it.
  *
- * The key grains.surface turns this off. With it and an exact yield heaps and
- * flat beds stand (docs/notes/two_fluid.md).
+ * grains.surface = "none" turns this off. With planes and an exact yield, the
+ * defaults, heaps and flat beds stand (docs/notes/two_fluid.md).
  *
  * Faces of such a leaf pass phi times the part of the volume swept that the
  * plane of c fills (vof.h): nothing where the bed does not reach.

@@ -25,8 +25,8 @@
  *   (1 - w) u_f^{n+1} + w m_c(u^{n+1}),
  * made so with a gas that weighs nothing, which vanishes where grains rest.
  *
- * Held grains, no wet side of which is at its yield stress, keep the velocity
- * that their springs leave them,
+ * Held grains, whose sides that are at their yield stress have less than a
+ * hundredth of that of all, keep the velocity that their springs leave them,
  *   u^{n+1} = u* + (1 - w) dt (g^{n+1} - g^n),
  * under a gas only, as a single phase meets a new load in the new g first, and
  * the predictor of advection knows w times what viscosity did in the last step,
